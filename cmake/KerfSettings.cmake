@@ -1,0 +1,66 @@
+# What every target of the project is compiled with, the options, and the libraries that are optional.
+
+set(KERF_TASKS auto CACHE STRING "Task back end: tbb, std (plain threads), or auto (tbb where it is found)")
+set_property(CACHE KERF_TASKS PROPERTY STRINGS auto tbb std)
+set(KERF_SANITIZE "" CACHE STRING "Sanitizers for -fsanitize, such as address,undefined or thread")
+option(KERF_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
+option(KERF_WERROR "Warnings are errors" ${PROJECT_IS_TOP_LEVEL})
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
+endif()
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
+
+find_package(hwy REQUIRED)
+find_package(Threads REQUIRED)
+if(NOT KERF_TASKS STREQUAL "std")
+  find_package(TBB QUIET)
+  if(NOT TBB_FOUND AND KERF_TASKS STREQUAL "tbb")
+    message(FATAL_ERROR "KERF_TASKS=tbb, but oneTBB was not found")
+  endif()
+endif()
+if(TBB_FOUND)
+  set(KERF_TASKS tbb)
+else()
+  message(STATUS "kerf: oneTBB not used, tasks run on std::thread")
+  set(KERF_TASKS std)
+endif()
+
+# kerf_optional(PACKAGE WHAT) looks for an optional library and says what is switched off without it.
+macro(kerf_optional package what)
+  find_package(${package} QUIET)
+  if(NOT ${package}_FOUND)
+    message(STATUS "kerf: ${package} not found: no ${what}")
+  endif()
+endmacro()
+
+add_library(kerf_flags INTERFACE)
+# Fused multiply-adds would make two neighbours disagree about their shared edge.
+target_compile_options(kerf_flags INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
+  -Wno-missing-field-initializers)
+if(KERF_WERROR)
+  target_compile_options(kerf_flags INTERFACE -Werror)
+endif()
+if(KERF_SANITIZE)
+  target_compile_options(kerf_flags INTERFACE -fsanitize=${KERF_SANITIZE} -fno-sanitize-recover=all
+    -fno-omit-frame-pointer -g1 -O1)
+  target_link_options(kerf_flags INTERFACE -fsanitize=${KERF_SANITIZE})
+endif()
+
+configure_file(kerf/base/version.h.in ${CMAKE_BINARY_DIR}/include/kerf/base/version.h @ONLY)
+
+# kerf_library(NAME): the include folders and flags that each of our libraries has.
+function(kerf_library name)
+  target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}>
+    $<BUILD_INTERFACE:${CMAKE_BINARY_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_compile_features(${name} PUBLIC cxx_std_20)
+  target_link_libraries(${name} PRIVATE $<BUILD_INTERFACE:kerf_flags>)
+endfunction()

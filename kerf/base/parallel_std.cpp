@@ -1,0 +1,129 @@
+// The task back end without oneTBB: a thread is started where one of the budget is free, else the caller does the work.
+// Starting threads costs more than oneTBB's tasks do; the thread sanitizer understands it.
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "kerf/base/fp_environment.h"
+#include "kerf/base/parallel.h"
+
+namespace kerf {
+namespace {
+
+/// Threads that a with_threads() scope may have at once, its caller's own included.
+struct Budget {
+  explicit Budget(int threads) : limit(threads), free(threads - 1) {}
+
+  bool take() {
+    int seen = free.load();
+    while (seen > 0) {
+      if (free.compare_exchange_weak(seen, seen - 1)) return true;
+    }
+    return false;
+  }
+  void give_back() { ++free; }
+
+  const int limit;
+  std::atomic<int> free;
+};
+
+Budget& machine_budget() {
+  static Budget budget(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  return budget;
+}
+
+thread_local Budget* current_budget = nullptr;
+
+Budget& budget() { return current_budget != nullptr ? *current_budget : machine_budget(); }
+
+/// Keeps the first exception of several threads.
+class FirstException {
+ public:
+  template <class F>
+  void guard(F&& f) {
+    try {
+      f();
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (first_ == nullptr) first_ = std::current_exception();
+    }
+  }
+  void rethrow() const {
+    if (first_ != nullptr) std::rethrow_exception(first_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::exception_ptr first_;
+};
+
+/// Starts f on a thread of the budget; the thread gives its place back at its end.
+template <class F>
+std::thread start(Budget& from, FirstException& failure, F f) {
+  return std::thread([&from, &failure, f] {
+    const StandardFloat standard;
+    current_budget = &from;
+    failure.guard(f);
+    from.give_back();
+  });
+}
+
+}  // namespace
+
+const char* task_backend() { return "std"; }
+
+int thread_count() { return budget().limit; }
+
+namespace detail {
+
+void run_parallel_for(size_t count, size_t grain, void (*body)(void*, size_t, size_t), void* data) {
+  grain = std::max<size_t>(grain, 1);
+  const size_t blocks = (count + grain - 1) / grain;
+  std::atomic<size_t> next = 0;
+  const auto work = [&] {
+    const StandardFloat standard;
+    for (size_t block = next++; block < blocks; block = next++) {
+      body(data, block * grain, std::min(count, (block + 1) * grain));
+    }
+  };
+  FirstException failure;
+  std::vector<std::thread> threads;
+  Budget& shared = budget();
+  while (threads.size() + 1 < blocks && shared.take()) threads.push_back(start(shared, failure, work));
+  failure.guard(work);
+  for (std::thread& thread : threads) thread.join();
+  failure.rethrow();
+}
+
+void run_parallel_invoke(void (*body)(void*, int), void* data) {
+  const StandardFloat standard;
+  Budget& shared = budget();
+  if (!shared.take()) {
+    body(data, 0);
+    body(data, 1);
+    return;
+  }
+  FirstException failure;
+  std::thread other = start(shared, failure, [=] { body(data, 1); });
+  failure.guard([&] { body(data, 0); });
+  other.join();
+  failure.rethrow();
+}
+
+void run_with_threads(int threads, void (*body)(void*), void* data) {
+  if (threads <= 0) return body(data);
+  Budget scope(threads);
+  struct Restore {
+    Budget* previous = current_budget;
+    ~Restore() { current_budget = previous; }
+  } restore;
+  current_budget = &scope;
+  body(data);
+}
+
+}  // namespace detail
+}  // namespace kerf

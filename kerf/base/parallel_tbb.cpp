@@ -1,0 +1,41 @@
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+
+#include "kerf/base/fp_environment.h"
+#include "kerf/base/parallel.h"
+
+namespace kerf {
+
+const char* task_backend() { return "tbb"; }
+
+int thread_count() { return tbb::this_task_arena::max_concurrency(); }
+
+namespace detail {
+
+void run_parallel_for(size_t count, size_t grain, void (*body)(void*, size_t, size_t), void* data) {
+  grain = std::max<size_t>(grain, 1);
+  const size_t blocks = (count + grain - 1) / grain;
+  tbb::parallel_for(size_t{0}, blocks, [&](size_t block) {
+    const StandardFloat standard;
+    body(data, block * grain, std::min(count, (block + 1) * grain));
+  });
+}
+
+void run_parallel_invoke(void (*body)(void*, int), void* data) {
+  const auto part = [=](int which) {
+    const StandardFloat standard;
+    body(data, which);
+  };
+  tbb::parallel_invoke([&] { part(0); }, [&] { part(1); });
+}
+
+void run_with_threads(int threads, void (*body)(void*), void* data) {
+  if (threads <= 0) return body(data);
+  tbb::task_arena(threads).execute([&] { body(data); });
+}
+
+}  // namespace detail
+}  // namespace kerf
