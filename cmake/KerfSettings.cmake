@@ -12,7 +12,6 @@ endif()
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
-set(CMAKE_CXX_VISIBILITY_PRESET hidden)
 set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
@@ -45,7 +44,8 @@ endmacro()
 add_library(kerf_flags INTERFACE)
 # Fused multiply-adds would make two neighbours disagree about their shared edge.
 target_compile_options(kerf_flags INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
-  -Wno-missing-field-initializers)
+  -Wno-missing-field-initializers
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # g++ 12 warns falsely about std::string
 if(KERF_WERROR)
   target_compile_options(kerf_flags INTERFACE -Werror)
 endif()

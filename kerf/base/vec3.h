@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 
 namespace kerf {
 
@@ -12,8 +13,14 @@ template <class T>
 struct Vec3 {
   T x = 0, y = 0, z = 0;
 
-  constexpr T operator[](uint32_t axis) const { return axis == 0 ? x : axis == 1 ? y : z; }
-  constexpr T& operator[](uint32_t axis) { return axis == 0 ? x : axis == 1 ? y : z; }
+  constexpr T operator[](uint32_t axis) const {
+    if (std::is_constant_evaluated()) return axis == 0 ? x : axis == 1 ? y : z;
+    return (&x)[axis];  // one load instead of two selects, in the hottest code there is
+  }
+  constexpr T& operator[](uint32_t axis) {
+    if (std::is_constant_evaluated()) return axis == 0 ? x : axis == 1 ? y : z;
+    return (&x)[axis];
+  }
 
   friend constexpr Vec3 operator+(Vec3 a, Vec3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
   friend constexpr Vec3 operator-(Vec3 a, Vec3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
@@ -26,6 +33,7 @@ struct Vec3 {
 
 using Vec3f = Vec3<float>;
 using Vec3d = Vec3<double>;
+static_assert(sizeof(Vec3f) == 12 && sizeof(Vec3d) == 24, "components must lie side by side");
 
 template <class T>
 constexpr T dot(Vec3<T> a, Vec3<T> b) {

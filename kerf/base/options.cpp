@@ -1,0 +1,80 @@
+#include "kerf/base/options.h"
+
+#include <algorithm>
+#include <cassert>
+#include <charconv>
+#include <cmath>
+
+#include "kerf/base/error.h"
+#include "kerf/base/nearest_word.h"
+
+namespace kerf {
+namespace {
+
+const OptionSpec* find(std::span<const OptionSpec> specs, std::string_view name) {
+  const auto found = std::find_if(specs.begin(), specs.end(), [&](const OptionSpec& spec) { return spec.name == name; });
+  return found == specs.end() ? nullptr : &*found;
+}
+
+std::string unknown_option(std::span<const OptionSpec> specs, std::string_view name) {
+  std::string sentence = "unknown option '" + std::string(name) + "'";
+  if (specs.empty()) return sentence + "; it takes none";
+  std::vector<std::string_view> names;
+  for (const OptionSpec& spec : specs) names.push_back(spec.name);
+  if (const std::string_view near = nearest_word(name, names); !near.empty()) {
+    return sentence + "; did you mean '" + std::string(near) + "'?";
+  }
+  sentence += "; there are ";
+  for (size_t i = 0; i < names.size(); ++i) sentence += (i > 0 ? ", " : "") + std::string(names[i]);
+  return sentence;
+}
+
+std::string range_text(const OptionSpec& spec) {
+  std::string text = spec.whole ? "a whole number " : "";
+  text += (spec.above_least ? "above " : "at least ") + to_text(spec.least);
+  if (!std::isinf(spec.most)) text += " and at most " + to_text(spec.most);
+  return text;
+}
+
+}  // namespace
+
+void OptionValues::set(std::string_view owner, std::string_view name, double value) {
+  const OptionSpec* spec = find(specs_, name);
+  if (spec == nullptr) throw Error(ErrorCode::invalid_option, std::string(owner), unknown_option(specs_, name));
+  if (is_set(name)) throw Error(ErrorCode::invalid_option, std::string(owner), "option '" + std::string(name) + "' is given twice");
+  const bool in_range = value <= spec->most && (spec->above_least ? value > spec->least : value >= spec->least);
+  if (!in_range || (spec->whole && value != std::floor(value))) {
+    throw Error(ErrorCode::invalid_option, std::string(owner),
+                std::string(name) + "=" + to_text(value) + " is out of range; it must be " + range_text(*spec));
+  }
+  given_.emplace_back(spec->name, value);
+}
+
+bool OptionValues::is_set(std::string_view name) const {
+  return std::any_of(given_.begin(), given_.end(), [&](const auto& entry) { return entry.first == name; });
+}
+
+double OptionValues::operator[](std::string_view name) const {
+  for (const auto& [given, value] : given_) {
+    if (given == name) return value;
+  }
+  const OptionSpec* spec = find(specs_, name);
+  assert(spec != nullptr);
+  return spec->fallback;
+}
+
+std::vector<std::pair<std::string_view, double>> OptionValues::given() const {
+  std::vector<std::pair<std::string_view, double>> ordered;
+  for (const OptionSpec& spec : specs_) {
+    if (is_set(spec.name)) ordered.emplace_back(spec.name, (*this)[spec.name]);
+  }
+  return ordered;
+}
+
+std::string to_text(double value) {
+  char text[64];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  return {text, end};
+}
+
+}  // namespace kerf

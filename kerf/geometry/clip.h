@@ -1,0 +1,18 @@
+#pragma once
+
+#include <span>
+
+#include "kerf/base/box3.h"
+#include "kerf/geometry/shapes.h"
+
+namespace kerf {
+
+/// The tight box of the part of a convex polygon (three or four corners) that lies in `cell`, rounded outward and within
+/// the cell; empty if they do not touch. Always cut from the polygon given, so that errors do not add up.
+Box3f clipped_bounds(std::span<const Vec3d> polygon, const Box3f& cell);
+
+/// The tight box of the part of a sphere's surface that lies in `cell`, rounded outward and within the cell; empty if
+/// the surface does not reach it, be the cell outside or inside.
+Box3f clipped_bounds(const Sphere& sphere, const Box3f& cell);
+
+}  // namespace kerf
