@@ -1,0 +1,77 @@
+#pragma once
+
+#include <algorithm>
+#include <tuple>
+#include <vector>
+
+#include "kerf/build/top_down.h"
+
+namespace kerf {
+
+/// Twice the centre of a reference's box along an axis: all that a partition compares, without a rounding to halve it.
+inline float center2(const Reference& reference, uint32_t axis) {
+  return reference.lower[axis] + reference.upper[axis];
+}
+
+/// References that are reordered in place: the base of the partitions that need no sorting.
+class ReferenceOrder {
+ public:
+  explicit ReferenceOrder(std::vector<Reference> references) : references_(std::move(references)) {}
+
+  Subset whole() const {
+    Subset subset{0, static_cast<uint32_t>(references_.size()), {}, {}};
+    for (const Reference& reference : references_) add(subset, reference);
+    return subset;
+  }
+
+  const Reference& reference(uint32_t i) const { return references_[i]; }
+
+  /// Equal counts along the axis where the centres spread most. Ties are broken by primitive, so the outcome is one.
+  Halves halve(const Subset& subset) {
+    const uint32_t axis = largest_axis(subset.centers.extent());
+    const auto key = [axis](const Reference& r) {
+      return std::make_tuple(center2(r, axis), r.geometry, r.primitive, r.lower.x, r.lower.y, r.lower.z);
+    };
+    const uint32_t middle = subset.begin + subset.count() / 2;
+    std::nth_element(references_.begin() + subset.begin, references_.begin() + middle,
+                     references_.begin() + subset.end,
+                     [&](const Reference& a, const Reference& b) { return key(a) < key(b); });
+    Halves halves{{subset.begin, middle, {}, {}}, {middle, subset.end, {}, {}}};
+    for (uint32_t i = subset.begin; i < middle; ++i) add(halves.left, references_[i]);
+    for (uint32_t i = middle; i < subset.end; ++i) add(halves.right, references_[i]);
+    return halves;
+  }
+
+ protected:
+  std::span<const Reference> references(const Subset& subset) const {
+    return {references_.data() + subset.begin, subset.count()};
+  }
+
+  /// References for which goes_left() holds come first.
+  template <class F>
+  Halves partition(const Subset& subset, F&& goes_left) {
+    Halves halves{{subset.begin, subset.begin, {}, {}}, {subset.end, subset.end, {}, {}}};
+    uint32_t low = subset.begin, high = subset.end;
+    while (low < high) {
+      if (goes_left(references_[low])) {
+        add(halves.left, references_[low++]);
+      } else {
+        add(halves.right, references_[low]);
+        std::swap(references_[low], references_[--high]);
+      }
+    }
+    halves.left.end = low;
+    halves.right.begin = low;
+    return halves;
+  }
+
+ private:
+  static void add(Subset& subset, const Reference& reference) {
+    subset.bounds.extend(reference.bounds());
+    subset.centers.extend(reference.lower + reference.upper);
+  }
+
+  std::vector<Reference> references_;
+};
+
+}  // namespace kerf

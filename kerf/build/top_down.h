@@ -1,0 +1,177 @@
+#pragma once
+
+#include <concepts>
+#include <optional>
+#include <string>
+
+#include "kerf/base/error.h"
+#include "kerf/base/options.h"
+#include "kerf/base/parallel.h"
+#include "kerf/references/reference.h"
+#include "kerf/tree/bvh.h"
+
+namespace kerf {
+
+/// The references [begin, end) of a partition's own order, with the box around them.
+struct Subset {
+  uint32_t begin = 0, end = 0;
+  Box3f bounds;
+  Box3f centers;  ///< of the references' lower + upper, twice their centres; a partition may leave it empty
+
+  uint32_t count() const { return end - begin; }
+};
+
+/// The two parts of a subset: [begin, middle) and [middle, end), neither empty.
+struct Halves {
+  Subset left, right;
+};
+
+/// Which plane, or none: what tells one top-down builder from another. It owns the references and their order.
+template <class P>
+concept Partition = requires(P& p, const Subset& subset, uint32_t i) {
+  { p.whole() } -> std::same_as<Subset>;
+  /// Reorders the subset at the plane it likes best; nothing if no plane divides it.
+  { p.split(subset) } -> std::same_as<std::optional<Halves>>;
+  /// Reorders the subset into two halves of equal counts; always possible for two and more.
+  { p.halve(subset) } -> std::same_as<Halves>;
+  { p.reference(i) } -> std::same_as<const Reference&>;
+};
+
+/// What all top-down builders share.
+struct TopDownOptions {
+  uint32_t leaf_size = 4;  ///< slots in a leaf, at most
+  uint32_t max_depth = kMaxDepth;
+  double inner_cost = 1;  ///< of visiting an inner node, against primitive_cost for a primitive test
+  double primitive_cost = 1;
+
+  static constexpr OptionSpec kSpecs[] = {
+      {"leaf", "references in a leaf, at most", 4, 1, 255, true},
+      {"depth", "depth of the tree, at most", kMaxDepth, 1, kMaxDepth, true},
+      {"inner_cost", "cost of visiting a node, for the leaf decision", 1, 0},
+      {"primitive_cost", "cost of testing a primitive, for the leaf decision", 1, 0, 1e30, false, true},
+  };
+  static TopDownOptions from(const OptionValues& values) {
+    return {static_cast<uint32_t>(values["leaf"]), static_cast<uint32_t>(values["depth"]), values["inner_cost"],
+            values["primitive_cost"]};
+  }
+};
+
+namespace detail {
+
+/// How many references fit below a node with `levels` levels to go.
+inline uint64_t capacity(uint32_t leaf_size, uint32_t levels) {
+  return levels >= 32 ? ~uint64_t{0} : uint64_t{leaf_size} << levels;
+}
+
+inline void check_depth(size_t references, const TopDownOptions& options) {
+  if (references <= capacity(options.leaf_size, options.max_depth)) return;
+  uint32_t needed = options.max_depth;
+  while (references > capacity(options.leaf_size, needed)) ++needed;
+  throw Error(ErrorCode::invalid_option, "depth",
+              std::to_string(references) + " references in leaves of " + std::to_string(options.leaf_size) +
+                  " need a depth of at least " + std::to_string(needed) + ", and " +
+                  std::to_string(options.max_depth) + " is allowed");
+}
+
+/// The recursion. Every subset has its own stretch of the node array, so that subtrees can be built at once and the
+/// result does not depend on which came first: the nodes below the root of [begin, end) take at most
+/// 2 (end - begin) - 2 places from `place` on, the root's two children the first two of them.
+template <Partition P>
+class TopDown {
+ public:
+  TopDown(P& partition, const TopDownOptions& options, std::vector<BvhNode>& nodes)
+      : partition_(partition), options_(options), nodes_(nodes) {}
+
+  void build(const Subset& subset, uint32_t node, size_t place, uint32_t depth) {
+    const std::optional<Halves> halves = divide(subset, depth);
+    if (!halves) {
+      nodes_[node] = {subset.bounds.lower, subset.begin, subset.bounds.upper, subset.count()};
+      return;
+    }
+    const auto child = static_cast<uint32_t>(place);
+    nodes_[node] = {subset.bounds.lower, child, subset.bounds.upper, 0};
+    const auto build_left = [&] { build(halves->left, child, place + 2, depth + 1); };
+    const auto build_right = [&] {
+      build(halves->right, child + 1, place + 2 * size_t{halves->left.count()}, depth + 1);
+    };
+    if (subset.count() >= kParallelCount) {
+      parallel_invoke(build_left, build_right);
+    } else {
+      build_left();
+      build_right();
+    }
+  }
+
+ private:
+  static constexpr uint32_t kParallelCount = 2048;  // fewer references are not worth a task
+
+  /// The two halves, or nothing if the subset shall be a leaf.
+  std::optional<Halves> divide(const Subset& subset, uint32_t depth) {
+    const bool fits_leaf = subset.count() <= options_.leaf_size;
+    if (subset.count() == 1 || depth == options_.max_depth) return std::nullopt;
+    std::optional<Halves> halves = partition_.split(subset);
+    if (!halves && fits_leaf) return std::nullopt;
+    // Where no plane divides, or a lopsided one would break the depth bound further down: equal counts keep it.
+    const uint64_t room = capacity(options_.leaf_size, options_.max_depth - depth - 1);
+    if (!halves || halves->left.count() > room || halves->right.count() > room) halves = partition_.halve(subset);
+    return fits_leaf && leaf_is_cheaper(subset, *halves) ? std::nullopt : halves;
+  }
+
+  /// The surface area heuristic (Goldsmith and Salmon 1987; MacDonald and Booth 1990).
+  bool leaf_is_cheaper(const Subset& subset, const Halves& halves) const {
+    const double area = half_area(subset.bounds);
+    const double below = half_area(halves.left.bounds) * halves.left.count() +
+                         half_area(halves.right.bounds) * halves.right.count();
+    return options_.primitive_cost * subset.count() * area <= options_.inner_cost * area + options_.primitive_cost * below;
+  }
+
+  P& partition_;
+  const TopDownOptions& options_;
+  std::vector<BvhNode>& nodes_;
+};
+
+/// The same tree without the unused places, nodes in depth-first order of pairs.
+inline std::vector<BvhNode> compacted(const std::vector<BvhNode>& sparse) {
+  std::vector<BvhNode> nodes{sparse[0]};
+  std::vector<uint32_t> stack{0};
+  while (!stack.empty()) {
+    const uint32_t parent = stack.back();
+    stack.pop_back();
+    if (nodes[parent].is_leaf()) continue;
+    const uint32_t from = nodes[parent].first;
+    const auto child = static_cast<uint32_t>(nodes.size());
+    nodes[parent].first = child;
+    nodes.push_back(sparse[from]);
+    nodes.push_back(sparse[from + 1]);
+    stack.push_back(child + 1);
+    stack.push_back(child);
+  }
+  nodes.shrink_to_fit();
+  return nodes;
+}
+
+}  // namespace detail
+
+/// Builds a tree from the root down: recursion, leaf decision, depth bound and threads for every partition.
+/// Throws Error(invalid_option) if the depth allowed cannot hold the references.
+template <Partition P>
+Bvh build_top_down(P& partition, const TopDownOptions& options) {
+  const Subset whole = partition.whole();
+  if (whole.count() == 0) return {};
+  detail::check_depth(whole.count(), options);
+  std::vector<BvhNode> sparse(2 * size_t{whole.count()} - 1);
+  detail::TopDown<P>(partition, options, sparse).build(whole, 0, 1, 0);
+  Bvh bvh;
+  bvh.nodes = detail::compacted(sparse);
+  std::vector<BvhNode>().swap(sparse);
+  bvh.slots.resize(whole.count());
+  parallel_for(whole.count(), 65536, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const Reference& reference = partition.reference(static_cast<uint32_t>(i));
+      bvh.slots[i] = {reference.geometry, reference.primitive};
+    }
+  });
+  return bvh;
+}
+
+}  // namespace kerf

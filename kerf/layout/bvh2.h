@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "kerf/tree/bvh.h"
+
+namespace kerf {
+
+/// A child of a Bvh2Node: its box and where it is. 32 bytes.
+struct Bvh2Child {
+  Vec3f lower;
+  uint32_t first = 0;  ///< inner node: its number; leaf: its first slot
+  Vec3f upper;
+  uint32_t count = 0;  ///< inner node: 0; leaf: its number of slots
+
+  Box3f bounds() const { return {lower, upper}; }
+};
+
+/// An inner node with the boxes of both its children: one cache line of 64 bytes decides about both.
+struct alignas(64) Bvh2Node {
+  Bvh2Child child[2];
+};
+static_assert(sizeof(Bvh2Node) == 64);
+
+/// The two-wide traversal layout of a Bvh.
+struct Bvh2 {
+  Bvh2Child root;  ///< an inner node or a single leaf; with no slots: nothing to hit
+  std::vector<Bvh2Node> nodes;
+  std::vector<LeafSlot> slots;
+
+  bool is_empty() const { return slots.empty(); }
+  size_t bytes() const { return nodes.size() * sizeof(Bvh2Node) + slots.size() * sizeof(LeafSlot); }
+};
+
+/// Takes the slots over, so that they are not held twice.
+Bvh2 make_bvh2(Bvh&& bvh);
+
+}  // namespace kerf

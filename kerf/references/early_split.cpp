@@ -1,0 +1,132 @@
+#include "kerf/references/early_split.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "kerf/base/error.h"
+#include "kerf/base/parallel.h"
+
+namespace kerf {
+namespace {
+
+constexpr size_t kGrain = 1024;
+
+Reference with_box(Reference reference, const Box3f& box) {
+  reference.lower = box.lower;
+  reference.upper = box.upper;
+  return reference;
+}
+
+/// Algorithm 4 for one primitive; emit(reference) returns false to stop early.
+template <class Emit>
+void split_primitive(const Reference& whole, const Clipper& clipper, double sa_max, std::vector<Reference>& stack,
+                     Emit&& emit) {
+  stack.assign(1, whole);
+  while (!stack.empty()) {
+    const Reference top = stack.back();
+    stack.pop_back();
+    const Box3f box = top.bounds();
+    const uint32_t axis = largest_axis(box.extent());
+    const float middle = center(box, axis);
+    const bool can_cut = box.lower[axis] < middle && middle < box.upper[axis];
+    if (surface_area(box) <= sa_max || !can_cut) {
+      if (!emit(top)) return;
+      continue;
+    }
+    const ClippedBoxes parts = clipper(top, axis, middle);
+    if (parts.below.is_empty() && parts.above.is_empty()) {  // only rounding can do that: keep what we had
+      if (!emit(top)) return;
+      continue;
+    }
+    if (!parts.above.is_empty()) stack.push_back(with_box(top, parts.above));
+    if (!parts.below.is_empty()) stack.push_back(with_box(top, parts.below));
+  }
+}
+
+/// The number of references that sa_max gives, or nothing as soon as it passes `most`.
+std::optional<size_t> count_references(std::span<const Reference> whole, const Clipper& clipper, double sa_max,
+                                       size_t most) {
+  std::atomic<size_t> total = 0;
+  parallel_for(whole.size(), kGrain, [&](size_t begin, size_t end) {
+    std::vector<Reference> stack;
+    size_t unreported = 0;
+    for (size_t i = begin; i < end && total.load(std::memory_order_relaxed) <= most; ++i) {
+      split_primitive(whole[i], clipper, sa_max, stack, [&](const Reference&) { return ++unreported <= most; });
+      if (unreported >= 256 || i + 1 == end) total += std::exchange(unreported, 0);
+    }
+    total += unreported;
+  });
+  return total <= most ? std::optional(total.load()) : std::nullopt;
+}
+
+/// The references that sa_max gives, or nothing if they are more than `most`.
+std::optional<std::vector<Reference>> split_all(std::span<const Reference> whole, const Clipper& clipper, double sa_max,
+                                                size_t most) {
+  std::vector<std::vector<Reference>> blocks((whole.size() + kGrain - 1) / kGrain);
+  std::atomic<size_t> total = 0;
+  parallel_for(whole.size(), kGrain, [&](size_t begin, size_t end) {
+    std::vector<Reference>& out = blocks[begin / kGrain];
+    std::vector<Reference> stack;
+    for (size_t i = begin; i < end && total.load(std::memory_order_relaxed) <= most; ++i) {
+      const size_t before = out.size();
+      split_primitive(whole[i], clipper, sa_max, stack, [&](const Reference& piece) {
+        out.push_back(piece);
+        return out.size() <= most;
+      });
+      total += out.size() - before;
+    }
+  });
+  if (total > most) return std::nullopt;
+  std::vector<Reference> all;
+  all.reserve(total);
+  for (std::vector<Reference>& block : blocks) {
+    all.insert(all.end(), block.begin(), block.end());
+    std::vector<Reference>().swap(block);
+  }
+  return all;
+}
+
+/// The smallest sa_max, to 0.05 %, above `too_small` whose references fit. The count never grows with sa_max, because a
+/// piece lies within the box that it was cut from; so bisection finds it, on a logarithmic scale. The way down in large
+/// steps first is cheap, as few primitives are cut there.
+double fitting_sa_max(std::span<const Reference> whole, const Clipper& clipper, double too_small, size_t most) {
+  double fits = 0;
+  for (const Reference& reference : whole) fits = std::max(fits, surface_area(reference.bounds()));
+  bool found_too_small = false;
+  while (fits > too_small * 1.0005) {
+    const double middle = found_too_small ? std::sqrt(fits) * std::sqrt(too_small) : std::max(fits / 8, too_small);
+    if (!(too_small < middle && middle < fits)) break;
+    const std::optional<size_t> count = count_references(whole, clipper, middle, most);
+    (count ? fits : too_small) = middle;
+    found_too_small = found_too_small || !count;
+    if (count && static_cast<double>(*count) >= 0.999 * static_cast<double>(most)) break;
+  }
+  return fits;
+}
+
+}  // namespace
+
+EarlySplitResult early_split(std::span<const Reference> whole, const Clipper& clipper, const EarlySplit& options) {
+  if (!(options.sa_max > 0)) {
+    throw Error(ErrorCode::invalid_option, "early_split",
+                "sa_max is " + std::to_string(options.sa_max) + "; it must be above 0 (inf: no splitting)");
+  }
+  if (!(options.cap >= 1)) {
+    throw Error(ErrorCode::invalid_option, "early_split",
+                "cap is " + std::to_string(options.cap) + "; it must be at least 1 reference per primitive");
+  }
+  if (std::isinf(options.sa_max)) return {{whole.begin(), whole.end()}, options.sa_max, false};
+  const double allowed = std::floor(options.cap * static_cast<double>(whole.size()));
+  const auto most = static_cast<size_t>(std::min(allowed, static_cast<double>(kMaxReferences)));
+  if (auto references = split_all(whole, clipper, options.sa_max, most)) {
+    return {std::move(*references), options.sa_max, false};
+  }
+  const double sa_max = fitting_sa_max(whole, clipper, options.sa_max, most);
+  return {std::move(*split_all(whole, clipper, sa_max, most)), sa_max, true};
+}
+
+}  // namespace kerf

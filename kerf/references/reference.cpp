@@ -1,0 +1,100 @@
+#include "kerf/references/reference.h"
+
+#include <algorithm>
+#include <string>
+
+#include "kerf/base/error.h"
+#include "kerf/base/parallel.h"
+
+namespace kerf {
+namespace {
+
+constexpr size_t kGrain = 8192;
+
+/// What came of one block of primitives.
+struct Block {
+  size_t kept = 0, invalid = 0, degenerate = 0;
+  uint32_t first_invalid = 0;
+};
+
+std::string describe(const Geometry& geometry, uint32_t primitive) {
+  switch (find_defect(geometry, primitive)) {
+    case Defect::bad_index: {
+      const auto& mesh = std::get<TriangleMesh>(geometry.shapes);
+      const TriangleCorners corners = mesh.triangles[primitive];
+      const uint32_t worst = *std::max_element(corners.begin(), corners.end());
+      return "vertex number " + std::to_string(worst) + " of " + std::to_string(mesh.vertices.size()) + " vertices";
+    }
+    case Defect::bad_coordinate: return "a coordinate that is not finite or beyond 1.3e36";
+    case Defect::bad_radius: return "a radius that is negative or not finite";
+    case Defect::none: break;
+  }
+  return "no defect";
+}
+
+/// Fills the block's part of `out` from its front with the references of valid primitives.
+Block fill(const Geometry& geometry, uint32_t number, size_t begin, size_t end, Reference* out) {
+  Block block;
+  for (size_t i = begin; i < end; ++i) {
+    const auto primitive = static_cast<uint32_t>(i);
+    if (find_defect(geometry, primitive) != Defect::none) {
+      if (block.invalid++ == 0) block.first_invalid = primitive;
+    } else if (is_degenerate(geometry, primitive)) {
+      ++block.degenerate;
+    } else {
+      const Box3f box = primitive_bounds(geometry, primitive);
+      out[begin + block.kept++] = {box.lower, number, box.upper, primitive};
+    }
+  }
+  return block;
+}
+
+[[noreturn]] void refuse(std::span<const Geometry> geometries, uint32_t number, uint32_t primitive, size_t count) {
+  const Geometry& geometry = geometries[number];
+  throw Error(ErrorCode::invalid_geometry,
+              "geometry " + std::to_string(number) + ", " + std::string(kind_name(geometry)) + " " +
+                  std::to_string(primitive),
+              describe(geometry, primitive) + "; " + std::to_string(count) +
+                  " such primitives in all (skip_invalid drops them)");
+}
+
+}  // namespace
+
+PrimitiveReferences make_references(std::span<const Geometry> geometries, bool skip_invalid) {
+  size_t total = 0;
+  for (const Geometry& geometry : geometries) total += primitive_count(geometry);
+  if (total > kMaxReferences || geometries.size() > kMaxReferences) {
+    throw Error(ErrorCode::too_large, "scene", std::to_string(total) + " primitives; at most 2147483647 are possible");
+  }
+  PrimitiveReferences result;
+  result.references.resize(total);
+  size_t kept = 0, first = 0;
+  uint32_t first_geometry = 0, first_primitive = 0;
+  for (uint32_t number = 0; number < geometries.size(); ++number) {
+    const Geometry& geometry = geometries[number];
+    const size_t count = primitive_count(geometry);
+    std::vector<Block> blocks((count + kGrain - 1) / kGrain);
+    Reference* out = result.references.data() + first;
+    parallel_for(count, kGrain, [&](size_t begin, size_t end) {
+      blocks[begin / kGrain] = fill(geometry, number, begin, end, out);
+    });
+    for (size_t b = 0; b < blocks.size(); ++b) {
+      if (blocks[b].invalid > 0 && result.invalid == 0) {
+        first_geometry = number;
+        first_primitive = blocks[b].first_invalid;
+      }
+      result.invalid += blocks[b].invalid;
+      result.degenerate += blocks[b].degenerate;
+      const Reference* from = out + b * kGrain;
+      Reference* to = result.references.data() + kept;
+      if (from != to) std::move(from, from + blocks[b].kept, to);
+      kept += blocks[b].kept;
+    }
+    first += count;
+  }
+  if (result.invalid > 0 && !skip_invalid) refuse(geometries, first_geometry, first_primitive, result.invalid);
+  result.references.resize(kept);
+  return result;
+}
+
+}  // namespace kerf

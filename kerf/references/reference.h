@@ -1,0 +1,38 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "kerf/base/box3.h"
+#include "kerf/geometry/geometry.h"
+
+namespace kerf {
+
+/// A box with the number of the primitive that is, or part of which is, inside: all that a builder sees. 32 bytes.
+/// The caller's numbers stand in it from birth; splitting makes more references with the same numbers.
+struct alignas(16) Reference {
+  Vec3f lower;
+  uint32_t geometry = 0;
+  Vec3f upper;
+  uint32_t primitive = 0;
+
+  Box3f bounds() const { return {lower, upper}; }
+  friend bool operator==(const Reference&, const Reference&) = default;
+};
+static_assert(sizeof(Reference) == 32);
+
+/// At most this many primitives in a scene and references in a tree: a bit of each number is kept for flags.
+inline constexpr size_t kMaxReferences = 0x7FFFFFFF;
+
+/// The references of whole primitives, and which primitives got none.
+struct PrimitiveReferences {
+  std::vector<Reference> references;  ///< by geometry, then primitive
+  size_t invalid = 0;                 ///< dropped: not finite or with a bad index; only with skip_invalid
+  size_t degenerate = 0;              ///< dropped: without area, so never hit
+};
+
+/// One reference for each primitive with an area, in order. Throws Error(invalid_geometry) that names the first invalid
+/// primitive and how many there are, unless `skip_invalid`; Error(too_large) above kMaxReferences. Parallel.
+PrimitiveReferences make_references(std::span<const Geometry> geometries, bool skip_invalid = false);
+
+}  // namespace kerf

@@ -1,0 +1,168 @@
+#include "kerf/scene/pipeline.h"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+
+#include "kerf/base/error.h"
+#include "kerf/base/nearest_word.h"
+
+namespace kerf {
+namespace {
+
+bool is_name_character(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; }
+
+/// Reads a pipeline from left to right.
+class Parser {
+ public:
+  explicit Parser(std::string_view text) : text_(text) {}
+
+  Pipeline parse() {
+    Pipeline pipeline;
+    while (true) {
+      pipeline.stages.push_back(parse_stage());
+      skip_spaces();
+      if (at_ == text_.size()) break;
+      if (!take('+')) fail("expected '+', '(' or the end, not '" + std::string(1, text_[at_]) + "'");
+    }
+    check_order(pipeline);
+    return pipeline;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& sentence) const { fail_at(at_, sentence); }
+  [[noreturn]] void fail_at(size_t at, const std::string& sentence) const {
+    throw Error(ErrorCode::invalid_option, "structure '" + std::string(text_) + "', column " + std::to_string(at + 1),
+                sentence);
+  }
+
+  void skip_spaces() {
+    while (at_ < text_.size() && text_[at_] == ' ') ++at_;
+  }
+  bool take(char c) {
+    skip_spaces();
+    if (at_ == text_.size() || text_[at_] != c) return false;
+    ++at_;
+    return true;
+  }
+  std::string_view parse_name(const char* what) {
+    skip_spaces();
+    const size_t begin = at_;
+    while (at_ < text_.size() && is_name_character(text_[at_])) ++at_;
+    if (at_ == begin) fail(std::string("expected ") + what);
+    return text_.substr(begin, at_ - begin);
+  }
+
+  Stage parse_stage() {
+    skip_spaces();
+    const size_t begin = at_;
+    starts_.push_back(begin);
+    const std::string_view name = parse_name("the name of a splitter, builder or structure");
+    const std::span<const MenuEntry> all = menu();
+    const auto found = std::find_if(all.begin(), all.end(), [&](const MenuEntry& entry) { return entry.name == name; });
+    if (found == all.end()) fail_at(begin, unknown(name));
+    Stage stage{&*found, OptionValues(found->options)};
+    if (!take('(')) return stage;
+    if (take(')')) return stage;
+    do {
+      parse_option(stage);
+    } while (take(','));
+    if (!take(')')) fail("expected ',' or ')'");
+    return stage;
+  }
+
+  void parse_option(Stage& stage) {
+    skip_spaces();
+    const size_t begin = at_;
+    const std::string_view name = parse_name("the name of an option");
+    if (!take('=')) {
+      if (name == "auto") fail_at(begin, "automatic splitting is not there yet; give sa_max or budget");
+      fail("expected '=' and a value after '" + std::string(name) + "'");
+    }
+    const double value = parse_value();
+    try {
+      stage.options.set(stage.entry->name, name, value);
+    } catch (const Error& error) {
+      fail_at(begin, error.what());
+    }
+  }
+
+  double parse_value() {
+    skip_spaces();
+    const char* first = text_.data() + at_;
+    double value = 0;
+    const auto [end, status] = std::from_chars(first, text_.data() + text_.size(), value);
+    if (status == std::errc::result_out_of_range) fail("the value is out of range");
+    if (status != std::errc()) {
+      if (text_.substr(at_).starts_with("auto")) fail("automatic splitting is not there yet; give a number");
+      fail("expected a number");
+    }
+    at_ += static_cast<size_t>(end - first);
+    return value;
+  }
+
+  static std::string unknown(std::string_view name) {
+    std::vector<std::string_view> names;
+    for (const MenuEntry& entry : menu()) names.push_back(entry.name);
+    std::string sentence = "unknown name '" + std::string(name) + "'";
+    const std::string_view near = nearest_word(name, names);
+    if (!near.empty()) return sentence + "; did you mean '" + std::string(near) + "'?";
+    sentence += "; there are ";
+    for (size_t i = 0; i < names.size(); ++i) sentence += (i > 0 ? ", " : "") + std::string(names[i]);
+    return sentence;
+  }
+
+  void check_order(const Pipeline& pipeline) const {
+    const size_t last = pipeline.stages.size() - 1;
+    for (size_t i = 0; i <= last; ++i) {
+      const MenuEntry& entry = *pipeline.stages[i].entry;
+      const std::string name(entry.name);
+      if (i < last && entry.kind != "splitter") fail_at(starts_[i + 1], "nothing can follow " + name + " yet");
+      if (i == last && entry.kind == "splitter") fail_at(starts_[i], "a builder must follow " + name + ", as in " + name + "+binned_sah");
+      if (i > 0 && entry.kind == "structure") fail_at(starts_[i], name + " tests whole primitives: no splitter can stand before it");
+    }
+  }
+
+  std::string_view text_;
+  size_t at_ = 0;
+  std::vector<size_t> starts_;
+};
+
+}  // namespace
+
+std::string Pipeline::text() const {
+  std::string text;
+  for (const Stage& stage : stages) {
+    if (!text.empty()) text += '+';
+    text += stage.entry->name;
+    const auto given = stage.options.given();
+    for (size_t i = 0; i < given.size(); ++i) {
+      text += (i == 0 ? "(" : ",") + std::string(given[i].first) + "=" + to_text(given[i].second);
+    }
+    if (!given.empty()) text += ')';
+  }
+  return text;
+}
+
+Pipeline parse_pipeline(std::string_view text) { return Parser(text).parse(); }
+
+std::vector<std::string> split_pipeline_list(std::string_view text) {
+  std::vector<std::string> list(1);
+  int open = 0;
+  for (const char c : text) {
+    open += c == '(' ? 1 : c == ')' ? -1 : 0;
+    if (c == ',' && open == 0) {
+      list.emplace_back();
+    } else {
+      list.back() += c;
+    }
+  }
+  for (const std::string& member : list) {
+    if (member.find_first_not_of(' ') == std::string::npos) {
+      throw Error(ErrorCode::invalid_option, "structures '" + std::string(text) + "'", "a member of the list is empty");
+    }
+  }
+  return list;
+}
+
+}  // namespace kerf

@@ -1,0 +1,104 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "kerf/base/box3.h"
+#include "kerf/geometry/geometry.h"
+#include "kerf/geometry/hit.h"
+#include "kerf/geometry/ray.h"
+#include "kerf/trace/trace_table.h"
+
+namespace kerf {
+
+/// How Scene::build() works.
+struct BuildOptions {
+  /// The pipeline: splitters, then a builder or structure, joined by '+', options in parentheses; see menu().
+  std::string structure = "binned_sah";
+  int threads = 0;            ///< 0: as many as the caller's arena has
+  bool skip_invalid = false;  ///< drop primitives that are not finite or have a bad index, instead of an error
+};
+
+/// What a build did and what came of it.
+struct BuildReport {
+  std::string structure;       ///< the pipeline in its canonical spelling
+  size_t primitives = 0;       ///< that the caller gave
+  size_t invalid = 0;          ///< of those: dropped because of skip_invalid
+  size_t degenerate = 0;       ///< of those: without area, so never hit and left out
+  size_t references = 0;       ///< in the leaves
+  double references_per_primitive = 0;  ///< R: references / (primitives that were not dropped or left out); 0 if none
+  double sa_max = 0;           ///< the surface area limit that was used; infinite without splitting
+  bool capped = false;         ///< the limit asked for would have passed the cap on references, so it was raised
+  size_t bytes = 0;            ///< of what rays are traced through, without the caller's memory
+  size_t nodes = 0, leaves = 0;
+  uint32_t depth = 0;          ///< edges from the root to the deepest leaf
+  double sah_cost = 0;         ///< see sah_cost()
+  uint64_t tree_hash = 0;      ///< equal for equal trees; 0 without a tree
+  struct Seconds {
+    double references = 0, split = 0, build = 0, layout = 0, total = 0;
+  } seconds;
+};
+
+/// Primitives and what finds which of them rays hit.
+///
+///     kerf::Scene scene;
+///     scene.add(kerf::TriangleMesh{vertices, triangles});
+///     scene.build({.structure = "early_split(budget=1.5)+binned_sah"});
+///     kerf::Hit hit = scene.closest_hit({.origin = {0, 0, 5}, .direction = {0, 0, -1}});
+///
+/// The scene looks at the caller's memory and copies none of it: vertices and indices must stay unchanged until the next
+/// build or the scene's end. Queries are const and may come from any number of threads. Their outcome depends on neither
+/// the structure, the instruction set, the number of threads nor the caller's floating-point mode; among equally near
+/// primitives the one with the smaller geometry, then primitive number is hit.
+class Scene {
+ public:
+  Scene();
+  ~Scene();
+  Scene(Scene&& other) noexcept;
+  Scene& operator=(Scene&& other) noexcept;
+
+  /// Adds a geometry and returns its number, from 0. It is seen by queries after the next build().
+  uint32_t add(Geometry geometry);
+  uint32_t add(const TriangleMesh& mesh, uint32_t mask = 0xFFFFFFFFU) { return add(Geometry{mesh, mask}); }
+  uint32_t add(Strided<Sphere> spheres, uint32_t mask = 0xFFFFFFFFU) { return add(Geometry{spheres, mask}); }
+  uint32_t add(Strided<Parallelogram> shapes, uint32_t mask = 0xFFFFFFFFU) { return add(Geometry{shapes, mask}); }
+
+  /// Makes what was added ready for queries; an empty scene hits nothing. Throws Error for a pipeline that is wrong
+  /// (invalid_option) or a primitive that is (invalid_geometry, naming the first and how many); the scene then answers
+  /// as before.
+  const BuildReport& build(const BuildOptions& options = {});
+
+  /// What the last build did. Throws Error(not_built) before the first.
+  const BuildReport& report() const;
+
+  /// The box around everything that can be hit; empty where nothing can.
+  Box3f bounds() const;
+
+  /// The nearest hit in [t_min, t_max], or a Hit that converts to false. Throws Error(not_built) before build().
+  Hit closest_hit(const Ray& ray) const { return table_->closest(data_, ray); }
+  /// Whether anything is hit in [t_min, t_max].
+  bool any_hit(const Ray& ray) const { return table_->any(data_, ray); }
+
+  /// The same, and adds the work done to `counts`.
+  Hit closest_hit(const Ray& ray, TraceCounts& counts) const { return table_->closest_counted(data_, ray, counts); }
+  bool any_hit(const Ray& ray, TraceCounts& counts) const { return table_->any_counted(data_, ray, counts); }
+
+  /// The unit normal where a hit of this scene lies; see unit_normal(). Zero for a miss.
+  Vec3f normal(const Hit& hit) const;
+
+  /// One result for each ray, in order, on `threads` threads (0: all of the caller's arena; 1: the calling thread).
+  /// Throws Error(invalid_argument) if the lengths differ.
+  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, int threads = 0) const;
+  void any_hit(std::span<const Ray> rays, std::span<uint8_t> hits, int threads = 0) const;
+
+ private:
+  struct Added;
+  struct Built;
+  std::unique_ptr<Added> added_;
+  std::unique_ptr<const Built> built_;
+  const TraceTable* table_;
+  const void* data_ = nullptr;
+};
+
+}  // namespace kerf
