@@ -1,0 +1,75 @@
+// kerf list: the menu.
+
+#include <fmt/core.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/kerf/command.h"
+#include "kerf/render/views.h"
+#include "kerf/scene/menu.h"
+
+namespace kerf::app {
+namespace {
+
+nlohmann::ordered_json menu_json() {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const MenuEntry& entry : menu()) {
+    nlohmann::ordered_json options = nlohmann::ordered_json::array();
+    for (const OptionSpec& spec : entry.options) {
+      // JSON has no infinity: it is the text "inf".
+      const auto number = [](double x) -> nlohmann::ordered_json {
+        return std::isinf(x) ? nlohmann::ordered_json("inf") : nlohmann::ordered_json(x);
+      };
+      options.push_back({{"name", spec.name},
+                         {"sentence", spec.sentence},
+                         {"default", number(spec.fallback)},
+                         {"least", number(spec.least)},
+                         {"most", number(spec.most)},
+                         {"whole", spec.whole}});
+    }
+    all.push_back({{"kind", entry.kind},
+                   {"name", entry.name},
+                   {"sentence", entry.sentence},
+                   {"source", entry.source},
+                   {"options", options}});
+  }
+  return all;
+}
+
+void print_menu() {
+  fmt::print("A structure is a pipeline: splitters, then one builder or structure, joined by '+', such as\n"
+             "  early_split(budget=1.5)+binned_sah(bins=32)\n");
+  std::string_view kind;
+  for (const MenuEntry& entry : menu()) {
+    if (entry.kind != kind) fmt::print("\n{}s\n", kind = entry.kind);
+    fmt::print("  {:<16}{}\n", entry.name, entry.sentence);
+    if (!entry.source.empty()) fmt::print("  {:<16}{}\n", "", entry.source);
+    for (const OptionSpec& spec : entry.options) {
+      fmt::print("  {:<18}{} = {}: {}\n", "", spec.name, to_text(spec.fallback), spec.sentence);
+    }
+  }
+  fmt::print("\nviews\n");
+  for (const ViewEntry& view : views()) fmt::print("  {:<16}{}\n", view.name, view.sentence);
+}
+
+}  // namespace
+
+void add_list(CLI::App& app, std::function<int()>& run) {
+  CLI::App* command = app.add_subcommand("list", "Prints all splitters, builders, structures and views.");
+  command->footer("Example: kerf list --json -");
+  auto json = std::make_shared<std::string>();
+  command->add_option("--json", *json, "Write the menu to this file as JSON; '-' is standard output");
+  command->callback([json, &run] {
+    run = [json] {
+      if (json->empty()) {
+        print_menu();
+      } else {
+        write_json(*json, menu_json().dump(2));
+      }
+      return kDone;
+    };
+  });
+}
+
+}  // namespace kerf::app

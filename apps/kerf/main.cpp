@@ -1,0 +1,111 @@
+// The command line: one file per subcommand, no logic of its own.
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <csignal>
+#include <exception>
+#include <vector>
+
+#include "apps/kerf/command.h"
+#include "kerf/base/error.h"
+#include "kerf/base/nearest_word.h"
+#include "kerf/base/parallel.h"
+#include "kerf/base/version.h"
+#include "kerf/io/output_file.h"
+
+namespace kerf::app {
+namespace {
+
+volatile std::sig_atomic_t interrupt_seen = 0;
+
+void on_interrupt(int signal) {
+  if (interrupt_seen != 0) std::_Exit(128 + signal);
+  interrupt_seen = 1;
+}
+
+/// "; did you mean ...?" for a word that no option or subcommand of the app has, else nothing.
+std::string suggestion(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  const std::vector<std::string_view> menu(names.begin(), names.end());
+  const std::string_view near = nearest_word(word.substr(0, word.find('=')), menu);
+  return near.empty() ? "" : fmt::format("; did you mean '{}'?", near);
+}
+
+int report_usage_error(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  const CLI::App& used = chosen.empty() ? app : *chosen.front();
+  const std::vector<std::string> extras = app.remaining(true);
+  if (const auto word = std::find_if(extras.begin(), extras.end(), [](const auto& e) { return e != "--"; });
+      error.get_name() == "ExtrasError" && word != extras.end()) {
+    fmt::print(stderr, "kerf: unknown word '{}'{}\n", *word, suggestion(used, *word));
+  } else {
+    fmt::print(stderr, "kerf: {}\n", error.what());
+  }
+  fmt::print(stderr, "Try: kerf {}--help\n", chosen.empty() ? "" : used.get_name() + " ");
+  return kUsage;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Finds what rays hit in scenes with large and long thin triangles.", "kerf");
+  app.set_version_flag("--version", fmt::format("kerf {} (tasks: {})", kVersion, task_backend()));
+  app.footer("Example: kerf render bunny.ply -o bunny.png --view normal");
+  std::function<int()> command;
+  add_render(app, command);
+  add_list(app, command);
+  app.require_subcommand(0, 1);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& success) {
+    return app.exit(success);
+  } catch (const CLI::ParseError& error) {
+    return report_usage_error(app, error);
+  }
+  if (!command) {
+    fmt::print("{}", app.help());
+    return kDone;
+  }
+  return command();
+}
+
+}  // namespace
+
+void write_json(const std::string& path, const std::string& text) {
+  if (path == "-") {
+    fmt::print("{}\n", text);
+    return;
+  }
+  OutputFile file(path);
+  file.write(text + "\n");
+  file.commit();
+}
+
+void watch_interrupts() {
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+}
+
+bool interrupted() { return interrupt_seen != 0; }
+
+}  // namespace kerf::app
+
+int main(int argc, char** argv) {
+  try {
+    return kerf::app::run(argc, argv);
+  } catch (const kerf::Error& error) {
+    fmt::print(stderr, "kerf: {}\n", error.what());
+    return error.code() == kerf::ErrorCode::invalid_option ? kerf::app::kUsage : kerf::app::kBadInput;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "kerf: not enough memory\n");
+    return kerf::app::kBadInput;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "kerf: {}\n", error.what());
+    return kerf::app::kBadInput;
+  }
+}

@@ -1,0 +1,35 @@
+#pragma once
+
+#include "kerf/base/box3.h"
+#include "kerf/geometry/ray.h"
+#include "kerf/geometry/shapes.h"
+
+namespace kerf {
+
+/// A pinhole camera. `fov` is the vertical field of view in degrees.
+struct Camera {
+  Vec3d eye{0, 0, 0};
+  Vec3d look_at{0, 0, -1};
+  Vec3d up{0, 1, 0};
+  double fov = 45;
+};
+
+/// A camera that sees all of a box, from the front, the right and above; of a unit cube if the box is empty.
+Camera framing_camera(const Box3f& bounds, double aspect, Vec3d up = {0, 1, 0}, double fov = 45);
+
+/// One ray through the centre of each pixel, of unit direction; pixel (0, 0) is at the top left.
+class CameraRays {
+ public:
+  /// Throws Error(invalid_argument) where no picture is defined: eye equal to look_at, up along the view, fov outside
+  /// (0, 180), a number that is not finite, a size of 0.
+  CameraRays(const Camera& camera, uint32_t width, uint32_t height);
+
+  Ray operator()(uint32_t x, uint32_t y) const;
+
+ private:
+  Vec3f origin_;
+  Vec3d forward_, right_, down_;  ///< right_ and down_: from the centre of the picture to its border
+  double width_, height_;
+};
+
+}  // namespace kerf
