@@ -53,6 +53,7 @@ int report_usage_error(const CLI::App& app, const CLI::ParseError& error) {
 }
 
 int run(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);  // a reader that went away is an error of write(), not the end of the program
   CLI::App app("Finds what rays hit in scenes with large and long thin triangles.", "kerf");
   app.set_version_flag("--version", fmt::format("kerf {} (tasks: {})", kVersion, task_backend()));
   app.footer("Example: kerf render bunny.ply -o bunny.png --view normal");

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "kerf/io/image.h"
+
+namespace kerf {
+
+// All of these write through OutputFile: the file appears whole or not at all. They throw Error (file) as that does,
+// and Error (invalid_argument) for an image without pixels, with other than 1 or 3 channels, or whose count of pixels
+// does not fit its size.
+
+/// Writes the floats as they are, as a little-endian portable float map.
+void write_pfm(const std::string& path, const Image& image);
+
+/// Writes 8 bits a channel. Values are meant for display, in [0, 1]; what lies outside is clamped and NaN becomes 0.
+/// Throws Error (invalid_argument) for an image of more than 2^29 bytes.
+void write_png(const std::string& path, const Image& image);
+
+/// Writes in the format that the end of the path names, .png or .pfm in any case. Throws Error (file) for any other.
+void write_image(const std::string& path, const Image& image);
+
+}  // namespace kerf
