@@ -1,8 +1,11 @@
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "kerf/base/fp_environment.h"
 #include "kerf/base/parallel.h"
@@ -34,6 +37,11 @@ void run_parallel_invoke(void (*body)(void*, int), void* data) {
 
 void run_with_threads(int threads, void (*body)(void*), void* data) {
   if (threads <= 0) return body(data);
+  // More threads than the machine has are asked for on purpose (to test); without this oneTBB would print a warning.
+  std::optional<tbb::global_control> more;
+  if (threads > tbb::info::default_concurrency()) {
+    more.emplace(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
+  }
   tbb::task_arena(threads).execute([&] { body(data); });
 }
 

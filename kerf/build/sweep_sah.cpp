@@ -26,7 +26,8 @@ class SweepSah {
 
   const Reference& reference(uint32_t i) const { return references_[lines_[0].order[i]]; }
 
-  /// The plane between two neighbours of an order with the least area times count, both sides added.
+  /// The plane between two neighbours of an order with the least area times count, both sides added; of equal ones that
+  /// nearest to the middle, or a heap of identical boxes would lose one at a time.
   std::optional<Halves> split(const Subset& subset) {
     std::array<Cut, 3> cuts;
     for_each_axis(subset, [&](uint32_t axis) { cuts[axis] = cheapest_cut(subset, axis); });
@@ -81,11 +82,14 @@ class SweepSah {
       line.right_area[i] = half_area(box);
     }
     box = {};
-    Cut best{std::numeric_limits<double>::infinity(), subset.begin + subset.count() / 2};
+    const uint32_t middle = subset.begin + subset.count() / 2;
+    const auto off_middle = [middle](uint32_t i) { return i < middle ? middle - i : i - middle; };
+    Cut best{std::numeric_limits<double>::infinity(), middle};
     for (uint32_t i = subset.begin + 1; i < subset.end; ++i) {
       box.extend(references_[line.order[i - 1]].bounds());
       const double cost = half_area(box) * (i - subset.begin) + line.right_area[i] * (subset.end - i);
-      if (cost < best.cost) best = {cost, i};
+      const bool is_tie = cost == best.cost && off_middle(i) < off_middle(best.middle);
+      if (cost < best.cost || is_tie) best = {cost, i};
     }
     return best;
   }

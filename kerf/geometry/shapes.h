@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstring>
 #include <span>
+#include <type_traits>
 
 #include "kerf/base/rounding.h"
 #include "kerf/base/vec3.h"
@@ -17,6 +18,10 @@ inline constexpr float kMaxCoordinate = 0x1p120F;
 constexpr bool is_coordinate(float x) { return x >= -kMaxCoordinate && x <= kMaxCoordinate; }
 constexpr bool is_coordinate(Vec3f p) { return is_coordinate(p.x) && is_coordinate(p.y) && is_coordinate(p.z); }
 
+/// A range of T in one piece that is not a temporary.
+template <class Range, class T>
+concept LastingRange = std::is_lvalue_reference_v<Range> && std::is_convertible_v<Range, std::span<const T>>;
+
 /// `count` values of type T in the caller's memory, `stride` bytes apart, of any alignment. Copies nothing: the memory
 /// must stay where it is, unchanged, as long as a scene uses it.
 template <class T>
@@ -26,6 +31,9 @@ class Strided {
   Strided(const void* data, size_t count, size_t stride = sizeof(T))
       : data_(static_cast<const std::byte*>(data)), count_(count), stride_(stride) {}
   Strided(std::span<const T> values) : Strided(values.data(), values.size()) {}
+  /// A vector or an array; temporaries are refused, for they would be gone before the scene looks.
+  template <LastingRange<T> Range>
+  Strided(Range&& values) : Strided(std::span<const T>(values)) {}
 
   size_t size() const { return count_; }
   const void* data() const { return data_; }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "kerf/tree/bvh.h"
@@ -14,7 +15,10 @@ struct Bvh2Child {
   uint32_t count = 0;  ///< inner node: 0; leaf: its number of slots
 
   Box3f bounds() const { return {lower, upper}; }
+  /// The lower sides as floats 0 to 2, the upper ones as 4 to 6.
+  const float* sides() const { return &lower.x; }
 };
+static_assert(sizeof(Bvh2Child) == 32 && offsetof(Bvh2Child, upper) == 16);
 
 /// An inner node with the boxes of both its children: one cache line of 64 bytes decides about both.
 struct alignas(64) Bvh2Node {

@@ -47,22 +47,6 @@ void split_primitive(const Reference& whole, const Clipper& clipper, double sa_m
   }
 }
 
-/// The number of references that sa_max gives, or nothing as soon as it passes `most`.
-std::optional<size_t> count_references(std::span<const Reference> whole, const Clipper& clipper, double sa_max,
-                                       size_t most) {
-  std::atomic<size_t> total = 0;
-  parallel_for(whole.size(), kGrain, [&](size_t begin, size_t end) {
-    std::vector<Reference> stack;
-    size_t unreported = 0;
-    for (size_t i = begin; i < end && total.load(std::memory_order_relaxed) <= most; ++i) {
-      split_primitive(whole[i], clipper, sa_max, stack, [&](const Reference&) { return ++unreported <= most; });
-      if (unreported >= 256 || i + 1 == end) total += std::exchange(unreported, 0);
-    }
-    total += unreported;
-  });
-  return total <= most ? std::optional(total.load()) : std::nullopt;
-}
-
 /// The references that sa_max gives, or nothing if they are more than `most`.
 std::optional<std::vector<Reference>> split_all(std::span<const Reference> whole, const Clipper& clipper, double sa_max,
                                                 size_t most) {
@@ -90,22 +74,28 @@ std::optional<std::vector<Reference>> split_all(std::span<const Reference> whole
   return all;
 }
 
-/// The smallest sa_max, to 0.05 %, above `too_small` whose references fit. The count never grows with sa_max, because a
-/// piece lies within the box that it was cut from; so bisection finds it, on a logarithmic scale. The way down in large
-/// steps first is cheap, as few primitives are cut there.
-double fitting_sa_max(std::span<const Reference> whole, const Clipper& clipper, double too_small, size_t most) {
-  double fits = 0;
-  for (const Reference& reference : whole) fits = std::max(fits, surface_area(reference.bounds()));
+/// Splits with the smallest sa_max, to 0.05 %, above `too_small` whose references fit. The count never grows with sa_max,
+/// because a piece lies within the box that it was cut from; so bisection finds it, on a logarithmic scale. A finer limit
+/// only cuts the pieces of a coarser one further, so each step starts from the finest pieces that fitted; the way down in
+/// large steps comes first, as few primitives are cut there.
+EarlySplitResult split_to_fit(std::span<const Reference> whole, const Clipper& clipper, double too_small, size_t most) {
+  EarlySplitResult result{{whole.begin(), whole.end()}, 0, true};
+  for (const Reference& reference : whole) result.sa_max = std::max(result.sa_max, surface_area(reference.bounds()));
   bool found_too_small = false;
-  while (fits > too_small * 1.0005) {
-    const double middle = found_too_small ? std::sqrt(fits) * std::sqrt(too_small) : std::max(fits / 8, too_small);
-    if (!(too_small < middle && middle < fits)) break;
-    const std::optional<size_t> count = count_references(whole, clipper, middle, most);
-    (count ? fits : too_small) = middle;
-    found_too_small = found_too_small || !count;
-    if (count && static_cast<double>(*count) >= 0.999 * static_cast<double>(most)) break;
+  const auto enough = [&] { return static_cast<double>(result.references.size()) >= 0.999 * static_cast<double>(most); };
+  while (result.sa_max > too_small * 1.0005 && !enough()) {
+    const double middle = found_too_small ? std::sqrt(result.sa_max) * std::sqrt(too_small)
+                                          : std::max(result.sa_max / 8, too_small);
+    if (!(too_small < middle && middle < result.sa_max)) break;
+    if (auto finer = split_all(result.references, clipper, middle, most)) {
+      result.references = std::move(*finer);
+      result.sa_max = middle;
+    } else {
+      too_small = middle;
+      found_too_small = true;
+    }
   }
-  return fits;
+  return result;
 }
 
 }  // namespace
@@ -125,8 +115,7 @@ EarlySplitResult early_split(std::span<const Reference> whole, const Clipper& cl
   if (auto references = split_all(whole, clipper, options.sa_max, most)) {
     return {std::move(*references), options.sa_max, false};
   }
-  const double sa_max = fitting_sa_max(whole, clipper, options.sa_max, most);
-  return {std::move(*split_all(whole, clipper, sa_max, most)), sa_max, true};
+  return split_to_fit(whole, clipper, options.sa_max, most);
 }
 
 }  // namespace kerf

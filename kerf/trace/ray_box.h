@@ -14,29 +14,34 @@ namespace kerf {
 /// than any error, at no cost per node (the idea: Woop, Benthin, Wald 2013, section 4). A direction component of 0 gives
 /// infinities of the right sign, and a NaN from 0 * infinity is ignored by the order of the comparisons below.
 struct BoxRay {
-  Vec3f origin_lower, origin_upper, inverse;
-  bool negative[3];
+  Vec3f origin_near, origin_far;  ///< moved towards the near and the far sides' safe direction
+  Vec3f inverse;
+  uint32_t near_side[3], far_side[3];  ///< where a box stores its near and far side of each axis
+
+  /// Boxes are seven floats: three lower sides, something else, three upper sides, as in Bvh2Child.
+  static constexpr uint32_t kLower = 0, kUpper = 4;
 
   BoxRay(const PreparedRay& ray, const Box3f& scene_bounds) {
     const Vec3d below = abs(to_double(scene_bounds.lower) - ray.origin_d);
     const Vec3d above = abs(to_double(scene_bounds.upper) - ray.origin_d);
     const double shift = 0x1p-21 * largest(max(below, above));
     for (uint32_t axis = 0; axis < 3; ++axis) {
-      origin_lower[axis] = round_up(ray.origin_d[axis] + shift);
-      origin_upper[axis] = round_down(ray.origin_d[axis] - shift);
+      const float for_lower = round_up(ray.origin_d[axis] + shift), for_upper = round_down(ray.origin_d[axis] - shift);
+      const bool negative = ray.direction_d[axis] < 0;
+      origin_near[axis] = negative ? for_upper : for_lower;
+      origin_far[axis] = negative ? for_lower : for_upper;
+      near_side[axis] = (negative ? kUpper : kLower) + axis;
+      far_side[axis] = (negative ? kLower : kUpper) + axis;
       inverse[axis] = 1 / static_cast<float>(ray.direction_d[axis]);
-      negative[axis] = ray.direction_d[axis] < 0;
     }
   }
 
   /// Where the ray enters the box, at the earliest, and whether it may within [t_min, limit].
-  bool enters(const Vec3f& lower, const Vec3f& upper, float t_min, float limit, float& entry) const {
+  bool enters(const float* box, float t_min, float limit, float& entry) const {
     float near = t_min, far = limit;
     for (uint32_t axis = 0; axis < 3; ++axis) {
-      const float t_lower = (lower[axis] - origin_lower[axis]) * inverse[axis];
-      const float t_upper = (upper[axis] - origin_upper[axis]) * inverse[axis];
-      const float t_near = negative[axis] ? t_upper : t_lower;
-      const float t_far = negative[axis] ? t_lower : t_upper;
+      const float t_near = (box[near_side[axis]] - origin_near[axis]) * inverse[axis];
+      const float t_far = (box[far_side[axis]] - origin_far[axis]) * inverse[axis];
       near = t_near > near ? t_near : near;
       far = t_far < far ? t_far : far;
     }

@@ -28,7 +28,7 @@ Hit Bvh2Tracer::trace(const Ray& ray, Counts& counts) const {
   best.t = prepared.t_max;
   Waiting current{layout.root.first, layout.root.count, 0};
   counts.count_boxes(1);
-  if (!box_ray.enters(layout.root.lower, layout.root.upper, prepared.t_min, best.t, current.entry)) return {};
+  if (!box_ray.enters(layout.root.sides(), prepared.t_min, best.t, current.entry)) return {};
   Waiting stack[kMaxDepth];  // one child waits for each level above the current one, and there are at most so many
   uint32_t waiting = 0;
   while (true) {
@@ -41,7 +41,7 @@ Hit Bvh2Tracer::trace(const Ray& ray, Counts& counts) const {
       for (int i = 0; i < 2; ++i) {
         const Bvh2Child& c = node.child[i];
         child[i] = {c.first, c.count, 0};
-        entered[i] = box_ray.enters(c.lower, c.upper, prepared.t_min, best.t, child[i].entry);
+        entered[i] = box_ray.enters(c.sides(), prepared.t_min, best.t, child[i].entry);
       }
       if (entered[0] && entered[1]) {
         const int near = child[1].entry < child[0].entry ? 1 : 0;
