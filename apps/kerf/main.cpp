@@ -38,24 +38,27 @@ std::string suggestion(const CLI::App& app, const std::string& word) {
   return near.empty() ? "" : fmt::format("; did you mean '{}'?", near);
 }
 
-int report_usage_error(const CLI::App& app, const CLI::ParseError& error) {
+/// Says what is wrong with the words and ends with kUsage.
+int refuse(const CLI::App& app, const std::string& sentence) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
-  const CLI::App& used = chosen.empty() ? app : *chosen.front();
-  const std::vector<std::string> extras = app.remaining(true);
-  if (const auto word = std::find_if(extras.begin(), extras.end(), [](const auto& e) { return e != "--"; });
-      error.get_name() == "ExtrasError" && word != extras.end()) {
-    fmt::print(stderr, "kerf: unknown word '{}'{}\n", *word, suggestion(used, *word));
-  } else {
-    fmt::print(stderr, "kerf: {}\n", error.what());
-  }
-  fmt::print(stderr, "Try: kerf {}--help\n", chosen.empty() ? "" : used.get_name() + " ");
+  fmt::print(stderr, "kerf: {}\nTry: kerf {}--help\n", sentence,
+             chosen.empty() ? "" : chosen.front()->get_name() + " ");
   return kUsage;
+}
+
+/// The words that no option or subcommand took, a misspelt option first.
+int refuse_extras(const CLI::App& app, const std::vector<std::string>& extras) {
+  const auto option = std::find_if(extras.begin(), extras.end(), [](const auto& e) { return e.starts_with('-'); });
+  const std::string& word = option != extras.end() ? *option : extras.front();
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  return refuse(app, fmt::format("unknown word '{}'{}", word, suggestion(chosen.empty() ? app : *chosen.front(), word)));
 }
 
 int run(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a reader that went away is an error of write(), not the end of the program
   CLI::App app("Finds what rays hit in scenes with large and long thin triangles.", "kerf");
   app.set_version_flag("--version", fmt::format("kerf {} (tasks: {})", kVersion, task_backend()));
+  app.allow_extras();  // to name the nearest word, which CLI11 does not
   app.footer("Example: kerf render bunny.ply -o bunny.png --view normal");
   std::function<int()> command;
   add_render(app, command);
@@ -66,8 +69,9 @@ int run(int argc, char** argv) {
   } catch (const CLI::Success& success) {
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
-    return report_usage_error(app, error);
+    return refuse(app, error.what());
   }
+  if (const std::vector<std::string> extras = app.remaining(true); !extras.empty()) return refuse_extras(app, extras);
   if (!command) {
     fmt::print("{}", app.help());
     return kDone;
