@@ -5,12 +5,24 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <optional>
 
 #include "kerf/base/fp_environment.h"
 #include "kerf/base/parallel.h"
 
 namespace kerf {
+
+namespace {
+
+constexpr int kMostThreads = 4096;
+
+/// More threads than the machine has are asked for on purpose (to test), and oneTBB would print a warning. Kept for good:
+/// arenas of the usual size are not affected, and a smaller limit of the program's own still holds.
+void allow_more_threads() {
+  static const auto* more = new tbb::global_control(tbb::global_control::max_allowed_parallelism, kMostThreads);
+  static_cast<void>(more);
+}
+
+}  // namespace
 
 const char* task_backend() { return "tbb"; }
 
@@ -37,11 +49,8 @@ void run_parallel_invoke(void (*body)(void*, int), void* data) {
 
 void run_with_threads(int threads, void (*body)(void*), void* data) {
   if (threads <= 0) return body(data);
-  // More threads than the machine has are asked for on purpose (to test); without this oneTBB would print a warning.
-  std::optional<tbb::global_control> more;
-  if (threads > tbb::info::default_concurrency()) {
-    more.emplace(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
-  }
+  threads = std::min(threads, kMostThreads);
+  if (threads > tbb::info::default_concurrency()) allow_more_threads();
   tbb::task_arena(threads).execute([&] { body(data); });
 }
 

@@ -18,9 +18,9 @@ inline constexpr float kMaxCoordinate = 0x1p120F;
 constexpr bool is_coordinate(float x) { return x >= -kMaxCoordinate && x <= kMaxCoordinate; }
 constexpr bool is_coordinate(Vec3f p) { return is_coordinate(p.x) && is_coordinate(p.y) && is_coordinate(p.z); }
 
-/// A range of T in one piece that is not a temporary.
+/// A range of T in one piece, such as a vector or an array.
 template <class Range, class T>
-concept LastingRange = std::is_lvalue_reference_v<Range> && std::is_convertible_v<Range, std::span<const T>>;
+concept PackedRange = std::is_convertible_v<Range&, std::span<const T>>;
 
 /// `count` values of type T in the caller's memory, `stride` bytes apart, of any alignment. Copies nothing: the memory
 /// must stay where it is, unchanged, as long as a scene uses it.
@@ -32,8 +32,8 @@ class Strided {
       : data_(static_cast<const std::byte*>(data)), count_(count), stride_(stride) {}
   Strided(std::span<const T> values) : Strided(values.data(), values.size()) {}
   /// A vector or an array; temporaries are refused, for they would be gone before the scene looks.
-  template <LastingRange<T> Range>
-  Strided(Range&& values) : Strided(std::span<const T>(values)) {}
+  template <PackedRange<T> Range>
+  Strided(Range& values) : Strided(std::span<const T>(values)) {}
 
   size_t size() const { return count_; }
   const void* data() const { return data_; }

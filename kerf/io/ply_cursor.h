@@ -86,7 +86,7 @@ class PlyAsciiCursor {
  private:
   std::string_view token(const PlyProperty& property);
   template <class T>
-  T parse(std::string_view token, const PlyProperty& property) const;
+  T parse(std::string_view text, const PlyProperty& property) const;
   double number(PlyType type, const PlyProperty& property);
   int64_t whole(PlyType type, const PlyProperty& property);
   [[noreturn]] void fail_here(const std::string& sentence) const;

@@ -150,7 +150,7 @@ Scene& Scene::operator=(Scene&& other) noexcept {
 
 uint32_t Scene::add(Geometry geometry) {
   if (added_ == nullptr) added_ = std::make_unique<Added>();  // a scene that was moved from starts anew
-  added_->geometries.push_back(std::move(geometry));
+  added_->geometries.push_back(geometry);
   return static_cast<uint32_t>(added_->geometries.size() - 1);
 }
 
