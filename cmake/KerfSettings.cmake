@@ -5,6 +5,8 @@ set_property(CACHE KERF_TASKS PROPERTY STRINGS auto tbb std)
 set(KERF_SANITIZE "" CACHE STRING "Sanitizers for -fsanitize, such as address,undefined or thread")
 option(KERF_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(KERF_WERROR "Warnings are errors" ${PROJECT_IS_TOP_LEVEL})
+option(KERF_PYTHON "Build the Python module" ${PROJECT_IS_TOP_LEVEL})
+option(KERF_INSTALL "Make cmake --install install Kerf" ${PROJECT_IS_TOP_LEVEL})
 
 if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
@@ -41,6 +43,20 @@ macro(kerf_optional package what)
   endif()
 endmacro()
 
+# Debian's own Python is the one that Debian's numpy is for; another one may be ahead on PATH.
+if(NOT DEFINED Python3_EXECUTABLE AND NOT DEFINED ENV{VIRTUAL_ENV} AND EXISTS /etc/debian_version)
+  find_program(Python3_EXECUTABLE python3 PATHS /usr/bin NO_DEFAULT_PATH)
+endif()
+find_package(Python3 QUIET COMPONENTS Interpreter OPTIONAL_COMPONENTS Development.Module)
+
+# kerf_skipped_test(NAME REASON) stands for a test that cannot be had here, so that it is skipped by name.
+function(kerf_skipped_test name reason)
+  if(KERF_TESTS)
+    add_test(NAME ${name} COMMAND ${CMAKE_COMMAND} -E echo "skipped: ${reason}")
+    set_tests_properties(${name} PROPERTIES LABELS small SKIP_REGULAR_EXPRESSION "^skipped: ")
+  endif()
+endfunction()
+
 add_library(kerf_flags INTERFACE)
 # Fused multiply-adds would make two neighbours disagree about their shared edge.
 target_compile_options(kerf_flags INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
@@ -57,8 +73,10 @@ endif()
 
 configure_file(kerf/base/version.h.in ${CMAKE_BINARY_DIR}/include/kerf/base/version.h @ONLY)
 
-# kerf_library(NAME): the include folders and flags that each of our libraries has.
+# kerf_library(NAME): the include folders and flags that each of our libraries has, and the name kerf::NAME, which is
+# the one it has after find_package(kerf) too.
 function(kerf_library name)
+  add_library(kerf::${name} ALIAS ${name})
   target_include_directories(${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}>
     $<BUILD_INTERFACE:${CMAKE_BINARY_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${name} PUBLIC cxx_std_20)

@@ -18,8 +18,7 @@ constexpr int kMostThreads = 4096;
 /// More threads than the machine has are asked for on purpose (to test), and oneTBB would print a warning. Kept for good:
 /// arenas of the usual size are not affected, and a smaller limit of the program's own still holds.
 void allow_more_threads() {
-  static const auto* more = new tbb::global_control(tbb::global_control::max_allowed_parallelism, kMostThreads);
-  static_cast<void>(more);
+  static const tbb::global_control more(tbb::global_control::max_allowed_parallelism, kMostThreads);
 }
 
 }  // namespace

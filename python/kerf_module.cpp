@@ -1,0 +1,312 @@
+// The Python module `kerf`: numpy arrays in, numpy arrays out. docs/python.md describes it.
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "kerf/base/error.h"
+#include "kerf/base/parallel.h"
+#include "kerf/base/version.h"
+#include "kerf/scene/menu.h"
+#include "kerf/scene/scene.h"
+
+namespace py = pybind11;
+
+namespace kerf::python {
+namespace {
+
+constexpr py::ssize_t kBlock = 1024;  // rays that one thread works on at a time
+
+[[noreturn]] void refuse(const std::string& place, const std::string& sentence) {
+  throw Error(ErrorCode::invalid_argument, place, sentence);
+}
+
+const char* code_name(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::invalid_geometry:
+      return "invalid_geometry";
+    case ErrorCode::invalid_option:
+      return "invalid_option";
+    case ErrorCode::invalid_argument:
+      return "invalid_argument";
+    case ErrorCode::not_built:
+      return "not_built";
+    case ErrorCode::file:
+      return "file";
+    case ErrorCode::too_large:
+      return "too_large";
+  }
+  return "";
+}
+
+/// numpy.asarray(given), whose numbers must be of one of the kinds (numpy's letters: f, i, u).
+py::array to_array(const py::object& given, const char* name, const std::string& kinds, const char* what) {
+  py::array array = py::module_::import("numpy").attr("asarray")(given);
+  // An empty list has no numbers, so numpy's guess at their type means nothing.
+  if (array.size() > 0 && kinds.find(array.dtype().kind()) == std::string::npos) {
+    refuse(name, std::string(what) + " are expected, not " + py::str(array.dtype()).cast<std::string>());
+  }
+  return array;
+}
+
+py::array_t<float> to_floats(const py::object& given, const char* name) {
+  return py::array_t<float>(to_array(given, name, "fiu", "numbers"));
+}
+
+std::string shape_text(const py::array& array) { return py::str(array.attr("shape")).cast<std::string>(); }
+
+/// Refuses what is neither of shape (n, 3) nor empty. A single (3,) is refused too: one vertex or face is no mesh.
+void check_rows(const py::array& rows, const char* name) {
+  const bool empty = rows.size() == 0 && (rows.ndim() == 1 || (rows.ndim() == 2 && rows.shape(1) == 3));
+  if (!empty && (rows.ndim() != 2 || rows.shape(1) != 3))
+    refuse(name, "shape (n, 3) is expected, not " + shape_text(rows));
+}
+
+/// The faces as vertex numbers of 32 bits. Numbers that do not fit are an error, or with `skip_invalid` become one that
+/// no mesh has, so that the face is dropped and counted like every other one with a bad index.
+py::array_t<uint32_t> to_faces(const py::object& given, bool skip_invalid) {
+  const py::array faces = to_array(given, "faces", "iu", "integers");
+  check_rows(faces, "faces");
+  if (faces.size() == 0 || py::isinstance<py::array_t<uint32_t>>(faces)) {
+    return py::array_t<uint32_t>(faces);
+  }
+  // Numbers from 2^63 become negative here: bad either way.
+  const py::array_t<int64_t, py::array::c_style | py::array::forcecast> wide(faces);
+  py::array_t<uint32_t> narrow({wide.shape(0), py::ssize_t{3}});
+  for (py::ssize_t i = 0; i < wide.size(); ++i) {
+    const int64_t number = wide.data()[i];
+    const bool fits = number >= 0 && number <= std::numeric_limits<uint32_t>::max();
+    if (!fits && !skip_invalid) {
+      const std::string text = py::str(faces.attr("item")(i)).cast<std::string>();
+      throw Error(ErrorCode::invalid_geometry, "faces, row " + std::to_string(i / 3),
+                  "vertex number " + text + " is out of range (skip_invalid drops such faces)");
+    }
+    narrow.mutable_data()[i] = fits ? static_cast<uint32_t>(number) : kNone;
+  }
+  return narrow;
+}
+
+/// The rows of an array as Kerf reads them, in place. `array` is replaced by a packed copy where its memory does not
+/// do: the three numbers of a row must lie side by side, rows may be any distance apart, forwards.
+template <class Row, class T>
+Strided<Row> to_strided(py::array_t<T>& array) {
+  if (array.size() == 0) return {};
+  if (array.strides(1) != sizeof(T) || array.strides(0) < 0) array = py::array_t<T, py::array::c_style>(array);
+  return {array.data(), static_cast<size_t>(array.shape(0)), static_cast<size_t>(array.strides(0))};
+}
+
+/// Rays as strided columns, and the shape that results have: what is common to all four after numpy's broadcasting.
+struct Rays {
+  std::array<py::array_t<float>, 4> columns;  ///< origins, directions (n, 3); t_min, t_max (n,)
+  std::vector<py::ssize_t> shape;
+  py::ssize_t count = 1;
+
+  Rays(const py::object& origins, const py::object& directions, const py::object& t_min, const py::object& t_max)
+      : columns{to_floats(origins, "origins"), to_floats(directions, "directions"), to_floats(t_min, "t_min"),
+                to_floats(t_max, "t_max")} {
+    const py::module_ numpy = py::module_::import("numpy");
+    std::array<py::tuple, 4> shapes;
+    for (size_t k = 0; k < 4; ++k) {
+      const py::array& column = columns[k];
+      const py::ssize_t dimensions = column.ndim() - (k < 2 ? 1 : 0);
+      if (k < 2 && (dimensions < 0 || column.shape(dimensions) != 3)) {
+        refuse(k == 0 ? "origins" : "directions", "shape (n, 3) or (3,) is expected, not " + shape_text(column));
+      }
+      shapes[k] = py::tuple(py::cast(std::vector<py::ssize_t>(column.shape(), column.shape() + dimensions)));
+    }
+    try {
+      shape = numpy.attr("broadcast_shapes")(*py::cast(shapes)).cast<std::vector<py::ssize_t>>();
+    } catch (const py::error_already_set& error) {
+      if (!error.matches(PyExc_ValueError)) throw;
+      refuse("rays",
+             "the shapes of origins, directions, t_min and t_max do not fit together: " + shape_text(columns[0]) +
+                 ", " + shape_text(columns[1]) + ", " + shape_text(columns[2]) + ", " + shape_text(columns[3]));
+    }
+    for (const py::ssize_t length : shape) count *= length;
+    for (size_t k = 0; k < 4; ++k) {
+      std::vector<py::ssize_t> full = shape, rows = {count};
+      if (k < 2) full.push_back(3), rows.push_back(3);
+      columns[k] = numpy.attr("broadcast_to")(columns[k], full).attr("reshape")(rows);
+    }
+  }
+
+  /// Any stride and any alignment, without a look at Python.
+  float at(size_t column, py::ssize_t row, py::ssize_t component = 0) const {
+    const py::array& array = columns[column];
+    const py::ssize_t within = column < 2 ? component * array.strides(1) : 0;
+    float value = 0;
+    std::memcpy(&value, static_cast<const char*>(array.data()) + row * array.strides(0) + within, sizeof(value));
+    return value;
+  }
+  Ray operator[](py::ssize_t i) const {
+    return {.origin = {at(0, i, 0), at(0, i, 1), at(0, i, 2)},
+            .t_min = at(2, i),
+            .direction = {at(1, i, 0), at(1, i, 1), at(1, i, 2)},
+            .t_max = at(3, i)};
+  }
+};
+
+/// A scene of one mesh that keeps the arrays it looks at.
+class MeshScene {
+ public:
+  MeshScene(const py::object& vertices, const py::object& faces, const std::string& structure, int threads,
+            bool skip_invalid)
+      : vertices_(to_floats(vertices, "vertices")), faces_(to_faces(faces, skip_invalid)), threads_(threads) {
+    if (threads < 0) refuse("threads", "0 or more are expected, not " + std::to_string(threads));
+    check_rows(vertices_, "vertices");
+    const auto corners = to_strided<Vec3f>(vertices_);
+    scene_.add(TriangleMesh{corners, to_strided<TriangleCorners>(faces_)});
+    const py::gil_scoped_release release;
+    scene_.build({.structure = structure, .threads = threads, .skip_invalid = skip_invalid});
+  }
+
+  /// Calls query(rays, first, hits) for blocks of rays on all threads, without Python's lock.
+  template <class Result, class F>
+  void trace(const Rays& rays, F&& store) const {
+    const py::gil_scoped_release release;
+    with_threads(threads_, [&] {
+      parallel_for(static_cast<size_t>(rays.count), kBlock, [&](size_t begin, size_t end) {
+        std::array<Ray, kBlock> block;
+        std::array<Result, kBlock> results;
+        const size_t count = end - begin;
+        for (size_t i = 0; i < count; ++i) block[i] = rays[static_cast<py::ssize_t>(begin + i)];
+        const std::span<const Ray> given(block.data(), count);
+        if constexpr (std::is_same_v<Result, Hit>) {
+          scene_.closest_hit(given, std::span(results.data(), count), 1);
+        } else {
+          scene_.any_hit(given, std::span(results.data(), count), 1);
+        }
+        for (size_t i = 0; i < count; ++i) store(begin + i, results[i]);
+      });
+    });
+  }
+
+  py::object closest_hit(const py::object& origins, const py::object& directions, const py::object& t_min,
+                         const py::object& t_max) const {
+    const Rays rays(origins, directions, t_min, t_max);
+    py::array_t<float> t(rays.shape), u(rays.shape), v(rays.shape);
+    py::array_t<int64_t> primitive(rays.shape);
+    py::array_t<bool> hit(rays.shape);
+    trace<Hit>(rays, [t = t.mutable_data(), u = u.mutable_data(), v = v.mutable_data(),
+                      primitive = primitive.mutable_data(), hit = hit.mutable_data()](size_t i, const Hit& h) {
+      t[i] = h.t;
+      u[i] = h.u;
+      v[i] = h.v;
+      primitive[i] = h ? static_cast<int64_t>(h.primitive) : -1;
+      hit[i] = static_cast<bool>(h);
+    });
+    return py::module_::import("kerf").attr("Hits")(t, u, v, primitive, hit);
+  }
+
+  py::array_t<bool> any_hit(const py::object& origins, const py::object& directions, const py::object& t_min,
+                            const py::object& t_max) const {
+    const Rays rays(origins, directions, t_min, t_max);
+    py::array_t<bool> hit(rays.shape);
+    trace<uint8_t>(rays, [hit = hit.mutable_data()](size_t i, uint8_t h) { hit[i] = h != 0; });
+    return hit;
+  }
+
+  py::array_t<float> bounds() const {
+    const Box3f box = scene_.bounds();
+    const std::array<Vec3f, 2> ends = {box.lower, box.upper};
+    return py::array_t<float>({2, 3}, &ends[0].x);
+  }
+
+  py::dict report() const {
+    using namespace py::literals;
+    const BuildReport& r = scene_.report();
+    return py::dict("structure"_a = r.structure, "primitives"_a = r.primitives, "invalid"_a = r.invalid,
+                    "degenerate"_a = r.degenerate, "references"_a = r.references,
+                    "references_per_primitive"_a = r.references_per_primitive, "sa_max"_a = r.sa_max,
+                    "capped"_a = r.capped, "bytes"_a = r.bytes, "nodes"_a = r.nodes, "leaves"_a = r.leaves,
+                    "depth"_a = r.depth, "sah_cost"_a = r.sah_cost, "tree_hash"_a = r.tree_hash,
+                    "seconds"_a = py::dict("references"_a = r.seconds.references, "split"_a = r.seconds.split,
+                                           "build"_a = r.seconds.build, "layout"_a = r.seconds.layout,
+                                           "total"_a = r.seconds.total));
+  }
+
+ private:
+  py::array_t<float> vertices_;
+  py::array_t<uint32_t> faces_;
+  int threads_ = 0;
+  Scene scene_;
+};
+
+py::list menu_list() {
+  using namespace py::literals;
+  py::list all;
+  for (const MenuEntry& entry : menu()) {
+    py::list options;
+    for (const OptionSpec& spec : entry.options) {
+      options.append(py::dict("name"_a = spec.name, "sentence"_a = spec.sentence, "default"_a = spec.fallback,
+                              "least"_a = spec.least, "most"_a = spec.most, "whole"_a = spec.whole));
+    }
+    all.append(py::dict("kind"_a = entry.kind, "name"_a = entry.name, "sentence"_a = entry.sentence,
+                        "source"_a = entry.source, "options"_a = options));
+  }
+  return all;
+}
+
+/// Makes kerf.Error, a ValueError with `code` and `place`, and turns the C++ exception into it.
+void add_error(py::module_& module) {
+  static py::handle type = PyErr_NewExceptionWithDoc("kerf.Error", "Bad input. `code` says what kind, `place` where.",
+                                                     PyExc_ValueError, nullptr);
+  module.add_object("Error", type);
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const Error& error) {
+      const py::object made = type(error.what());
+      made.attr("code") = code_name(error.code());
+      made.attr("place") = error.place();
+      PyErr_SetObject(type.ptr(), made.ptr());
+    }
+  });
+}
+
+constexpr const char* kSceneDoc =
+    "Scene(vertices, faces, structure='binned_sah', threads=0, skip_invalid=False)\n\n"
+    "Triangles and what finds which of them rays hit. vertices: (n, 3) numbers; faces: (m, 3) integers.\n"
+    "float32 vertices and uint32 faces are looked at, not copied, and kept alive: leave them unchanged.\n"
+    "Raises Error, a ValueError, for bad input.";
+
+constexpr const char* kClosestDoc =
+    "The nearest hit of each ray in [t_min, t_max], as Hits. origins, directions: (n, 3) or (3,); t_min, t_max: "
+    "numbers\n"
+    "or (n,); numpy's broadcasting applies.";
+
+}  // namespace
+}  // namespace kerf::python
+
+PYBIND11_MODULE(kerf, module) {
+  using namespace kerf::python;
+  const float infinity = std::numeric_limits<float>::infinity();
+  module.doc() = "Kerf: finds what rays hit in triangle meshes.";
+  module.attr("__version__") = kerf::kVersion;
+  add_error(module);
+  const py::object hits =
+      py::module_::import("collections").attr("namedtuple")("Hits", "t u v primitive hit", py::arg("module") = "kerf");
+  hits.attr("__doc__") =
+      "One entry per ray: t (float32, inf for a miss), u and v (float32, the weights of the face's second and third\n"
+      "vertex), primitive (int64, the face, -1 for a miss), hit (bool).";
+  module.attr("Hits") = hits;
+  module.def("menu", menu_list, "All that a structure may name: a list of dicts.");
+  py::class_<MeshScene>(module, "Scene", kSceneDoc)
+      .def(py::init<const py::object&, const py::object&, const std::string&, int, bool>(), py::arg("vertices"),
+           py::arg("faces"), py::arg("structure") = "binned_sah", py::arg("threads") = 0,
+           py::arg("skip_invalid") = false)
+      .def("closest_hit", &MeshScene::closest_hit, py::arg("origins"), py::arg("directions"), py::arg("t_min") = 0.0F,
+           py::arg("t_max") = infinity, kClosestDoc)
+      .def("any_hit", &MeshScene::any_hit, py::arg("origins"), py::arg("directions"), py::arg("t_min") = 0.0F,
+           py::arg("t_max") = infinity, "Whether each ray hits anything in [t_min, t_max]; see closest_hit().")
+      .def_property_readonly("bounds", &MeshScene::bounds, "float32 (2, 3): the box around all that can be hit.")
+      .def_property_readonly("report", &MeshScene::report, "What the build did, as a dict.");
+}
