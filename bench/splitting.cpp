@@ -87,7 +87,8 @@ nlohmann::ordered_json print_row(const std::string& scene, const std::string& tu
   for (size_t i = 0; i < row.seconds.size(); ++i) speedups.push_back(plain.seconds[i] / row.seconds[i]);
   const auto n = static_cast<double>(rays);
   const BuildReport& report = row.scene.report();
-  const double nodes = static_cast<double>(row.counts.nodes) / n, primitives = static_cast<double>(row.counts.primitives) / n;
+  const double nodes = static_cast<double>(row.counts.nodes) / n,
+               primitives = static_cast<double>(row.counts.primitives) / n;
   const double nanoseconds = quantile(row.seconds, 0.5) / n * 1e9;
   fmt::print("{:<15} {:<9} {:<36} {:>6.3f} {:>8.2f} {:>8.2f} {:>8.0f} {:>7.2f}x  ({:.2f} to {:.2f})\n", scene, turn,
              row.structure, report.references_per_primitive, nodes, primitives, nanoseconds, quantile(speedups, 0.5),
@@ -140,7 +141,9 @@ int main(int argc, char** argv) {
   app.add_option("--builder", arguments.builder, "The builder")->capture_default_str();
   app.add_option("--width", arguments.width, "Rays in a row")->capture_default_str();
   app.add_option("--height", arguments.height, "Rows of rays")->capture_default_str();
-  app.add_option("--repeats", arguments.repeats, "Rounds of alternating runs")->check(CLI::Range(1, 1000))->capture_default_str();
+  app.add_option("--repeats", arguments.repeats, "Rounds of alternating runs")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   app.add_option("--json", arguments.json, "Write the table to this file");
   CLI11_PARSE(app, argc, argv);
   try {

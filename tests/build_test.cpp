@@ -85,10 +85,12 @@ TEST_P(EveryBuilder, KeepsTheDepthBoundWhereEveryPlaneIsLopsided) {
   }
   const Geometry geometry{TriangleMesh{std::span<const Vec3f>(vertices), std::span<const TriangleCorners>(triangles)}};
   for (const uint32_t depth : {7U, 8U, 10U, 20U, 64U}) {
-    const Bvh bvh = builder().build(references_of({&geometry, 1}, false), options_of(builder(), {{"depth", depth}, {"leaf", 1}}));
+    const Bvh bvh =
+        builder().build(references_of({&geometry, 1}, false), options_of(builder(), {{"depth", depth}, {"leaf", 1}}));
     EXPECT_EQ(find_fault(bvh, {&geometry, 1}, 1, depth), std::nullopt) << depth;
   }
-  EXPECT_THROW(builder().build(references_of({&geometry, 1}, false), options_of(builder(), {{"depth", 6}, {"leaf", 1}})), Error);
+  EXPECT_THROW(
+      builder().build(references_of({&geometry, 1}, false), options_of(builder(), {{"depth", 6}, {"leaf", 1}})), Error);
 }
 
 TEST_P(EveryBuilder, SameTreeForAnyNumberOfThreads) {
@@ -121,7 +123,9 @@ TEST(Builders, TheLeafDecisionFollowsTheCosts) {
   const Geometry geometry = scene.geometry();
   for (const BuilderEntry& builder : builders()) {
     const auto leaves = [&](double inner_cost) {
-      return measure(builder.build(references_of({&geometry, 1}, false), options_of(builder, {{"inner_cost", inner_cost}}))).leaves;
+      return measure(
+                 builder.build(references_of({&geometry, 1}, false), options_of(builder, {{"inner_cost", inner_cost}})))
+          .leaves;
     };
     EXPECT_GT(leaves(0), 1900U) << builder.name;  // nodes for nothing: one reference a leaf wherever a plane divides
     EXPECT_LT(leaves(100), leaves(1)) << builder.name;
@@ -133,7 +137,8 @@ TEST(Builders, MoreCandidatesGiveCheaperTrees) {
   const Geometry geometry = scene.geometry();
   const auto cost = [&](const char* name, const std::map<std::string, double>& given = {}) {
     for (const BuilderEntry& builder : builders()) {
-      if (builder.name == name) return sah_cost(builder.build(references_of({&geometry, 1}, true), options_of(builder, given)));
+      if (builder.name == name)
+        return sah_cost(builder.build(references_of({&geometry, 1}, true), options_of(builder, given)));
     }
     ADD_FAILURE() << name;
     return 0.0;

@@ -34,8 +34,8 @@ TEST(Menu, EveryEntryHasAUniqueNameAndASentence) {
 
 TEST(Pipeline, SpellsItselfBack) {
   for (const char* text : {"binned_sah", "brute_force", "early_split(sa_max=10)+binned_sah(bins=32)",
-                           "early_split(budget=1.5)+sweep_sah(leaf=1,depth=40)", "early_split(sa_max=1e-30)+object_median",
-                           "early_split(sa_max=inf)+spatial_median"}) {
+                           "early_split(budget=1.5)+sweep_sah(leaf=1,depth=40)",
+                           "early_split(sa_max=1e-30)+object_median", "early_split(sa_max=inf)+spatial_median"}) {
     EXPECT_EQ(parse_pipeline(text).text(), text);
   }
   EXPECT_EQ(parse_pipeline(" early_split ( cap = 4 , sa_max = 10.0 ) + binned_sah ( ) ").text(),
@@ -45,29 +45,54 @@ TEST(Pipeline, SpellsItselfBack) {
 TEST(Pipeline, RefusesWithTheColumnAndTheNearestWord) {
   EXPECT_EQ(refusal("binned_shah"),
             "structure 'binned_shah', column 1: unknown name 'binned_shah'; did you mean 'binned_sah'?");
-  EXPECT_EQ(refusal("early_split(sa_max=10)+bined_sah"),
-            "structure 'early_split(sa_max=10)+bined_sah', column 24: unknown name 'bined_sah'; did you mean 'binned_sah'?");
-  EXPECT_EQ(refusal("early_split(samax=10)+binned_sah"),
-            "structure 'early_split(samax=10)+binned_sah', column 13: early_split: unknown option 'samax'; did you mean "
-            "'sa_max'?");
+  EXPECT_EQ(
+      refusal("early_split(sa_max=10)+bined_sah"),
+      "structure 'early_split(sa_max=10)+bined_sah', column 24: unknown name 'bined_sah'; did you mean 'binned_sah'?");
+  EXPECT_EQ(
+      refusal("early_split(samax=10)+binned_sah"),
+      "structure 'early_split(samax=10)+binned_sah', column 13: early_split: unknown option 'samax'; did you mean "
+      "'sa_max'?");
   EXPECT_NE(refusal("zzz").find("there are early_split, binned_sah"), std::string::npos);
 }
 
 TEST(Pipeline, RefusesEveryKindOfMistake) {
-  for (const char* text :
-       {"", " ", "+", "binned_sah+", "+binned_sah", "binned_sah(", "binned_sah(bins", "binned_sah(bins=", "binned_sah(bins=32",
-        "binned_sah(bins=32,)", "binned_sah(bins=32)x", "binned_sah binned_sah", "binned_sah(bins=thirty)",
-        "binned_sah(bins=1)", "binned_sah(bins=1.5)", "binned_sah(bins=nan)", "binned_sah(bins=1e999)",
-        "binned_sah(bins=32,bins=16)", "binned_sah+binned_sah", "binned_sah+early_split", "early_split",
-        "early_split+brute_force", "early_split(sa_max=0)+binned_sah", "early_split(sa_max=-1)+binned_sah",
-        "early_split(sa_max=nan)+binned_sah", "early_split(cap=0.5)+binned_sah", "early_split(auto)+binned_sah",
-        "early_split(sa_max=auto)+binned_sah", "brute_force(leaf=4)", "binned_sah,sweep_sah"}) {
+  for (const char* text : {"",
+                           " ",
+                           "+",
+                           "binned_sah+",
+                           "+binned_sah",
+                           "binned_sah(",
+                           "binned_sah(bins",
+                           "binned_sah(bins=",
+                           "binned_sah(bins=32",
+                           "binned_sah(bins=32,)",
+                           "binned_sah(bins=32)x",
+                           "binned_sah binned_sah",
+                           "binned_sah(bins=thirty)",
+                           "binned_sah(bins=1)",
+                           "binned_sah(bins=1.5)",
+                           "binned_sah(bins=nan)",
+                           "binned_sah(bins=1e999)",
+                           "binned_sah(bins=32,bins=16)",
+                           "binned_sah+binned_sah",
+                           "binned_sah+early_split",
+                           "early_split",
+                           "early_split+brute_force",
+                           "early_split(sa_max=0)+binned_sah",
+                           "early_split(sa_max=-1)+binned_sah",
+                           "early_split(sa_max=nan)+binned_sah",
+                           "early_split(cap=0.5)+binned_sah",
+                           "early_split(auto)+binned_sah",
+                           "early_split(sa_max=auto)+binned_sah",
+                           "brute_force(leaf=4)",
+                           "binned_sah,sweep_sah"}) {
     EXPECT_FALSE(refusal(text).empty()) << text;
   }
 }
 
 TEST(Pipeline, ListsAreCutOutsideParentheses) {
-  const std::vector<std::string> list = split_pipeline_list("binned_sah(bins=8,leaf=1),early_split(sa_max=1,cap=2)+sweep_sah");
+  const std::vector<std::string> list =
+      split_pipeline_list("binned_sah(bins=8,leaf=1),early_split(sa_max=1,cap=2)+sweep_sah");
   ASSERT_EQ(list.size(), 2U);
   EXPECT_EQ(list[0], "binned_sah(bins=8,leaf=1)");
   EXPECT_EQ(list[1], "early_split(sa_max=1,cap=2)+sweep_sah");

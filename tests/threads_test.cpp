@@ -53,7 +53,8 @@ TEST(Threads, ScenesBuildAtOnceWithoutDisturbingEachOther) {
     threads.emplace_back([&, i] {
       Scene scene;
       scene.add(triangles.geometry());
-      hashes[i] = scene.build({.structure = "early_split(budget=1.5)+sweep_sah", .threads = static_cast<int>(i)}).tree_hash;
+      hashes[i] =
+          scene.build({.structure = "early_split(budget=1.5)+sweep_sah", .threads = static_cast<int>(i)}).tree_hash;
     });
   }
   for (std::thread& thread : threads) thread.join();

@@ -123,7 +123,8 @@ TEST_F(SevenNodes, BruteForceCountsEveryPrimitive) {
   const std::vector<LeafSlot> slots{{0, 0}, {0, 1}, {0, 2}, {0, 3}};
   const BruteForce brute({&geometry_, 1}, slots);
   TraceCounts counts;
-  const Hit hit = brute_force_table().closest_counted(&brute, {.origin = {0, 0.25F, 0.25F}, .direction = {1, 0, 0}}, counts);
+  const Hit hit =
+      brute_force_table().closest_counted(&brute, {.origin = {0, 0.25F, 0.25F}, .direction = {1, 0, 0}}, counts);
   EXPECT_EQ(hit.primitive, 0U);
   expect_counts(counts, 0, 4, 0);
 }

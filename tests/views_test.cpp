@@ -1,4 +1,5 @@
-// Cameras, and golden pictures of every view, named after the view. KERF_UPDATE_GOLDEN=1 writes them anew: look at them.
+// Cameras, and golden pictures of every view, named after the view. KERF_UPDATE_GOLDEN=1 writes them anew: look at
+// them.
 
 #include <gtest/gtest.h>
 

@@ -38,8 +38,9 @@ nlohmann::ordered_json menu_json() {
 }
 
 void print_menu() {
-  fmt::print("A structure is a pipeline: splitters, then one builder or structure, joined by '+', such as\n"
-             "  early_split(budget=1.5)+binned_sah(bins=32)\n");
+  fmt::print(
+      "A structure is a pipeline: splitters, then one builder or structure, joined by '+', such as\n"
+      "  early_split(budget=1.5)+binned_sah(bins=32)\n");
   std::string_view kind;
   for (const MenuEntry& entry : menu()) {
     if (entry.kind != kind) fmt::print("\n{}s\n", kind = entry.kind);

@@ -51,7 +51,8 @@ int refuse_extras(const CLI::App& app, const std::vector<std::string>& extras) {
   const auto option = std::find_if(extras.begin(), extras.end(), [](const auto& e) { return e.starts_with('-'); });
   const std::string& word = option != extras.end() ? *option : extras.front();
   const std::vector<CLI::App*> chosen = app.get_subcommands();
-  return refuse(app, fmt::format("unknown word '{}'{}", word, suggestion(chosen.empty() ? app : *chosen.front(), word)));
+  return refuse(app,
+                fmt::format("unknown word '{}'{}", word, suggestion(chosen.empty() ? app : *chosen.front(), word)));
 }
 
 int run(int argc, char** argv) {

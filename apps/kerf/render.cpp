@@ -48,8 +48,9 @@ std::array<uint32_t, 2> parse_size(const std::string& text) {
   const bool is_plain = text.find_first_not_of("0123456789x") == std::string::npos && text.size() < 20;
   if (!is_plain || std::sscanf(text.c_str(), "%ux%u%c", &size[0], &size[1], &rest) != 2 || size[0] == 0 ||
       size[1] == 0 || size[0] > 65536 || size[1] > 65536) {
-    throw Error(ErrorCode::invalid_option, "--size",
-                fmt::format("'{}' is not a size; write it as WIDTHxHEIGHT, such as 960x640, each from 1 to 65536", text));
+    throw Error(
+        ErrorCode::invalid_option, "--size",
+        fmt::format("'{}' is not a size; write it as WIDTHxHEIGHT, such as 960x640, each from 1 to 65536", text));
   }
   return size;
 }
@@ -148,11 +149,11 @@ int render(Arguments arguments) {
   const ViewEntry& view = find_view(arguments.view);
   const auto [width, height] = parse_size(arguments.size);
   const Mesh mesh = read_ply(arguments.input);
-  if (mesh.triangles.empty()) throw Error(ErrorCode::file, arguments.input, "there is no face in it, so nothing to see");
+  if (mesh.triangles.empty())
+    throw Error(ErrorCode::file, arguments.input, "there is no face in it, so nothing to see");
   Scene scene;
   scene.add(TriangleMesh{std::span(mesh.vertices), std::span(mesh.triangles)});
-  const BuildReport& report =
-      scene.build({arguments.structure, arguments.threads, arguments.skip_invalid});
+  const BuildReport& report = scene.build({arguments.structure, arguments.threads, arguments.skip_invalid});
   if (report.capped && !arguments.quiet) {
     fmt::print(stderr, "kerf: note: the cap on references raised sa_max to {:.6g}\n", report.sa_max);
   }
@@ -185,16 +186,22 @@ void add_render(CLI::App& app, std::function<int()>& run) {
       "             --structure 'early_split(budget=1.5)+binned_sah'");
   auto a = std::make_shared<Arguments>();
   command->add_option("input", a->input, "A PLY file")->required();
-  command->add_option("-o,--output", a->output, "Picture to write: .png to look at, .pfm for the values themselves "
+  command->add_option("-o,--output", a->output,
+                      "Picture to write: .png to look at, .pfm for the values themselves "
                       "(default: the input's name with .png, in this folder)");
-  command->add_option("--view", a->view, "depth, primitive, normal, uv, nodes or triangles; see kerf list")->capture_default_str();
+  command->add_option("--view", a->view, "depth, primitive, normal, uv, nodes or triangles; see kerf list")
+      ->capture_default_str();
   command->add_option("--structure", a->structure, "How to find what rays hit; see kerf list")->capture_default_str();
   command->add_option("--size", a->size, "Width and height in pixels")->capture_default_str();
-  command->add_option("--eye", a->eye, "Camera position X,Y,Z (default: the model is framed)")->delimiter(',')->expected(3);
+  command->add_option("--eye", a->eye, "Camera position X,Y,Z (default: the model is framed)")
+      ->delimiter(',')
+      ->expected(3);
   command->add_option("--look-at", a->look_at, "Point in the middle of the picture X,Y,Z")->delimiter(',')->expected(3);
   command->add_option("--up", a->up, "Direction that is up X,Y,Z (default: 0,1,0)")->delimiter(',')->expected(3);
   command->add_option("--fov", a->fov, "Vertical field of view in degrees")->capture_default_str();
-  command->add_option("--threads", a->threads, "Threads to use; 0: all")->check(CLI::Range(0, 4096))->capture_default_str();
+  command->add_option("--threads", a->threads, "Threads to use; 0: all")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
   command->add_flag("--skip-invalid", a->skip_invalid, "Drop triangles that are not finite, instead of an error");
   command->add_option("--json", a->json, "Write figures to this file; '-' is standard output");
   command->add_flag("--quiet", a->quiet, "No messages and no progress");

@@ -37,9 +37,7 @@ constexpr Box3f united(Box3f a, const Box3f& b) {
   return a;
 }
 
-constexpr Box3f intersected(const Box3f& a, const Box3f& b) {
-  return {max(a.lower, b.lower), min(a.upper, b.upper)};
-}
+constexpr Box3f intersected(const Box3f& a, const Box3f& b) { return {max(a.lower, b.lower), min(a.upper, b.upper)}; }
 
 /// Half the surface area, in double: float overflows for coordinates that we accept. 0 for an empty box.
 constexpr double half_area(const Box3f& b) {

@@ -12,7 +12,8 @@ namespace kerf {
 namespace {
 
 const OptionSpec* find(std::span<const OptionSpec> specs, std::string_view name) {
-  const auto found = std::find_if(specs.begin(), specs.end(), [&](const OptionSpec& spec) { return spec.name == name; });
+  const auto found =
+      std::find_if(specs.begin(), specs.end(), [&](const OptionSpec& spec) { return spec.name == name; });
   return found == specs.end() ? nullptr : &*found;
 }
 
@@ -41,7 +42,8 @@ std::string range_text(const OptionSpec& spec) {
 void OptionValues::set(std::string_view owner, std::string_view name, double value) {
   const OptionSpec* spec = find(specs_, name);
   if (spec == nullptr) throw Error(ErrorCode::invalid_option, std::string(owner), unknown_option(specs_, name));
-  if (is_set(name)) throw Error(ErrorCode::invalid_option, std::string(owner), "option '" + std::string(name) + "' is given twice");
+  if (is_set(name))
+    throw Error(ErrorCode::invalid_option, std::string(owner), "option '" + std::string(name) + "' is given twice");
   const bool in_range = value <= spec->most && (spec->above_least ? value > spec->least : value >= spec->least);
   if (!in_range || (spec->whole && value != std::floor(value))) {
     throw Error(ErrorCode::invalid_option, std::string(owner),

@@ -16,7 +16,7 @@ struct OptionSpec {
   double fallback = 0;
   double least = 0;
   double most = std::numeric_limits<double>::infinity();
-  bool whole = false;      ///< only whole numbers
+  bool whole = false;        ///< only whole numbers
   bool above_least = false;  ///< `least` itself is not allowed
 };
 

@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kMostThreads = 4096;
 
-/// More threads than the machine has are asked for on purpose (to test), and oneTBB would print a warning. Kept for good:
-/// arenas of the usual size are not affected, and a smaller limit of the program's own still holds.
+/// More threads than the machine has are asked for on purpose (to test), and oneTBB would print a warning. Kept for
+/// good: arenas of the usual size are not affected, and a smaller limit of the program's own still holds.
 void allow_more_threads() {
   static const tbb::global_control more(tbb::global_control::max_allowed_parallelism, kMostThreads);
 }

@@ -99,8 +99,7 @@ Plane cheapest_plane(const Bins& bins, const Slices& slices) {
 
 class BinnedSah : public ReferenceOrder {
  public:
-  BinnedSah(std::vector<Reference> references, uint32_t bins)
-      : ReferenceOrder(std::move(references)), bins_(bins) {}
+  BinnedSah(std::vector<Reference> references, uint32_t bins) : ReferenceOrder(std::move(references)), bins_(bins) {}
 
   std::optional<Halves> split(const Subset& subset) {
     const Slices slices(subset.centers, bins_);
@@ -119,7 +118,8 @@ class BinnedSah : public ReferenceOrder {
 
 Bvh build_binned_sah(std::vector<Reference> references, const OptionValues& options) {
   if (options.is_set("bins") && options.is_set("planes")) {
-    throw Error(ErrorCode::invalid_option, "binned_sah", "bins and planes say the same thing (bins = planes + 1): give one");
+    throw Error(ErrorCode::invalid_option, "binned_sah",
+                "bins and planes say the same thing (bins = planes + 1): give one");
   }
   const double bins = options.is_set("planes") ? options["planes"] + 1 : options["bins"];
   BinnedSah partition(std::move(references), static_cast<uint32_t>(bins));

@@ -33,8 +33,7 @@ class ReferenceOrder {
       return std::make_tuple(center2(r, axis), r.geometry, r.primitive, r.lower.x, r.lower.y, r.lower.z);
     };
     const uint32_t middle = subset.begin + subset.count() / 2;
-    std::nth_element(references_.begin() + subset.begin, references_.begin() + middle,
-                     references_.begin() + subset.end,
+    std::nth_element(references_.begin() + subset.begin, references_.begin() + middle, references_.begin() + subset.end,
                      [&](const Reference& a, const Reference& b) { return key(a) < key(b); });
     Halves halves{{subset.begin, middle, {}, {}}, {middle, subset.end, {}, {}}};
     for (uint32_t i = subset.begin; i < middle; ++i) add(halves.left, references_[i]);

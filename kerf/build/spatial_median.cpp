@@ -10,7 +10,8 @@ class SpatialMedian : public ReferenceOrder {
  public:
   using ReferenceOrder::ReferenceOrder;
 
-  /// The plane through the centre of the box, across its longest side; across the next where all centres lie on one side.
+  /// The plane through the centre of the box, across its longest side; across the next where all centres lie on one
+  /// side.
   std::optional<Halves> split(const Subset& subset) {
     const Vec3f extent = subset.bounds.extent();
     std::array<uint32_t, 3> axes{0, 1, 2};

@@ -8,8 +8,8 @@
 namespace kerf {
 namespace {
 
-/// Three orders of the references, each sorted along one axis once and kept sorted by stable partition ever after, which
-/// makes the whole build O(N log N) (Wald, Boulos, Shirley 2007; the idea for kd-trees: Wald and Havran 2006).
+/// Three orders of the references, each sorted along one axis once and kept sorted by stable partition ever after,
+/// which makes the whole build O(N log N) (Wald, Boulos, Shirley 2007; the idea for kd-trees: Wald and Havran 2006).
 class SweepSah {
  public:
   explicit SweepSah(std::vector<Reference> references)
@@ -28,7 +28,8 @@ class SweepSah {
   const Reference& reference(uint32_t i) const { return references_[lines_[0].order[i]]; }
 
   /// The plane between two different centres with the least area times count, both sides added. References with equal
-  /// centres stay together: a cut among them is no plane, and taking one was measured to cost quality on aligned scenes.
+  /// centres stay together: a cut among them is no plane, and taking one was measured to cost quality on aligned
+  /// scenes.
   std::optional<Halves> split(const Subset& subset) {
     std::array<Cut, 3> cuts;
     for_each_axis(subset, [&](uint32_t axis) { cuts[axis] = cheapest_cut(subset, axis); });

@@ -69,8 +69,8 @@ inline void check_depth(size_t references, const TopDownOptions& options) {
   while (references > capacity(options.leaf_size, needed)) ++needed;
   throw Error(ErrorCode::invalid_option, "depth",
               std::to_string(references) + " references in leaves of " + std::to_string(options.leaf_size) +
-                  " need a depth of at least " + std::to_string(needed) + ", and " +
-                  std::to_string(options.max_depth) + " is allowed");
+                  " need a depth of at least " + std::to_string(needed) + ", and " + std::to_string(options.max_depth) +
+                  " is allowed");
 }
 
 /// The recursion. Every subset has its own stretch of the node array, so that subtrees can be built at once and the
@@ -120,9 +120,10 @@ class TopDown {
   /// The surface area heuristic (Goldsmith and Salmon 1987; MacDonald and Booth 1990).
   bool leaf_is_cheaper(const Subset& subset, const Halves& halves) const {
     const double area = half_area(subset.bounds);
-    const double below = half_area(halves.left.bounds) * halves.left.count() +
-                         half_area(halves.right.bounds) * halves.right.count();
-    return options_.primitive_cost * subset.count() * area <= options_.inner_cost * area + options_.primitive_cost * below;
+    const double below =
+        half_area(halves.left.bounds) * halves.left.count() + half_area(halves.right.bounds) * halves.right.count();
+    return options_.primitive_cost * subset.count() * area <=
+           options_.inner_cost * area + options_.primitive_cost * below;
   }
 
   P& partition_;

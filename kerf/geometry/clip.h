@@ -7,8 +7,8 @@
 
 namespace kerf {
 
-/// The tight box of the part of a convex polygon (three or four corners) that lies in `cell`, rounded outward and within
-/// the cell; empty if they do not touch. Always cut from the polygon given, so that errors do not add up.
+/// The tight box of the part of a convex polygon (three or four corners) that lies in `cell`, rounded outward and
+/// within the cell; empty if they do not touch. Always cut from the polygon given, so that errors do not add up.
 Box3f clipped_bounds(std::span<const Vec3d> polygon, const Box3f& cell);
 
 /// The tight box of the part of a sphere's surface that lies in `cell`, rounded outward and within the cell; empty if

@@ -39,8 +39,8 @@ Box3f clip_to(const Sphere& s, const Box3f& cell) { return clipped_bounds(s, cel
 
 Defect defect_of(const Parallelogram& p) {
   // The far corner must stay in range too.
-  const bool far_corner = is_coordinate(p.corner + p.u) && is_coordinate(p.corner + p.v) &&
-                          is_coordinate(p.corner + p.u + p.v);
+  const bool far_corner =
+      is_coordinate(p.corner + p.u) && is_coordinate(p.corner + p.v) && is_coordinate(p.corner + p.u + p.v);
   return is_coordinate(p.corner) && is_coordinate(p.u) && is_coordinate(p.v) && far_corner ? Defect::none
                                                                                            : Defect::bad_coordinate;
 }
@@ -91,8 +91,9 @@ Defect find_defect(const Geometry& geometry, uint32_t primitive) {
     }
     return Defect::none;
   }
-  return with_shape(geometry, primitive, Overloaded{[](const Triangle&) { return Defect::none; },
-                                                    [](const auto& shape) { return defect_of(shape); }});
+  return with_shape(
+      geometry, primitive,
+      Overloaded{[](const Triangle&) { return Defect::none; }, [](const auto& shape) { return defect_of(shape); }});
 }
 
 bool is_degenerate(const Geometry& geometry, uint32_t primitive) {
@@ -100,8 +101,7 @@ bool is_degenerate(const Geometry& geometry, uint32_t primitive) {
 }
 
 bool intersect(const Geometry& geometry, uint32_t primitive, const PreparedRay& ray, float limit, Crossing& crossing) {
-  return with_shape(geometry, primitive,
-                    [&](const auto& shape) { return intersect(ray, shape, limit, crossing); });
+  return with_shape(geometry, primitive, [&](const auto& shape) { return intersect(ray, shape, limit, crossing); });
 }
 
 Vec3f unit_normal(const Geometry& geometry, uint32_t primitive, float u, float v) {

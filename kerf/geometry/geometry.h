@@ -38,8 +38,8 @@ bool is_degenerate(const Geometry& geometry, uint32_t primitive);
 /// Where the ray crosses a primitive first within [t_min, limit]. The one truth that every kernel agrees with.
 bool intersect(const Geometry& geometry, uint32_t primitive, const PreparedRay& ray, float limit, Crossing& crossing);
 
-/// The unit normal at a crossing: of a triangle by the right hand around its corners, of a parallelogram along u x v, of
-/// a sphere outward.
+/// The unit normal at a crossing: of a triangle by the right hand around its corners, of a parallelogram along u x v,
+/// of a sphere outward.
 Vec3f unit_normal(const Geometry& geometry, uint32_t primitive, float u, float v);
 
 }  // namespace kerf

@@ -45,8 +45,8 @@ struct Crossing {
   float t = 0, u = 0, v = 0;
 };
 
-/// Rounds t and says whether it is a hit: finite and within [t_min, limit], both included. `limit` is the nearest hit so
-/// far or the ray's own end.
+/// Rounds t and says whether it is a hit: finite and within [t_min, limit], both included. `limit` is the nearest hit
+/// so far or the ray's own end.
 inline bool accept_t(const PreparedRay& ray, double t, float limit, Crossing& crossing) {
   crossing.t = without_minus_zero(static_cast<float>(t));
   return crossing.t >= ray.t_min && crossing.t <= limit && std::isfinite(crossing.t);

@@ -9,8 +9,9 @@ namespace kerf {
 /// True for a parallelogram without area.
 inline bool is_degenerate(const Parallelogram& p) { return cross(to_double(p.u), to_double(p.v)) == Vec3d{}; }
 
-/// Where the ray crosses a parallelogram, seen from either side; its border belongs to it. Decided in double by the four
-/// edge functions of its corners, as a triangle is by three, so a mesh of both is watertight where corners are equal.
+/// Where the ray crosses a parallelogram, seen from either side; its border belongs to it. Decided in double by the
+/// four edge functions of its corners, as a triangle is by three, so a mesh of both is watertight where corners are
+/// equal.
 inline bool intersect(const PreparedRay& ray, const Parallelogram& shape, float limit, Crossing& crossing) {
   const std::array<Vec3d, 4> corner = shape.corners();
   const Vec3d p0 = sheared(ray, corner[0]), p1 = sheared(ray, corner[1]);

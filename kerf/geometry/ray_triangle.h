@@ -19,7 +19,8 @@ inline bool may_hit_triangle(const PreparedRay& ray, const Triangle& t) {
   const float cx = c[ray.kx] - ray.shear_x * cz, cy = c[ray.ky] - ray.shear_y * cz;
   const float u = cx * by - cy * bx, v = ax * cy - ay * cx, w = bx * ay - by * ax;
   const auto max3 = [](float p, float q, float r) { return std::max(std::max(p, q), r); };
-  const float s = std::max(max3(std::abs(ax), std::abs(bx), std::abs(cx)), max3(std::abs(ay), std::abs(by), std::abs(cy)));
+  const float s =
+      std::max(max3(std::abs(ax), std::abs(bx), std::abs(cx)), max3(std::abs(ay), std::abs(by), std::abs(cy)));
   const float z = max3(std::abs(az), std::abs(bz), std::abs(cz));
   const float error = 0x1p-19F * (s * (s + z)) + 0x1p-120F;
   return !(std::min(std::min(u, v), w) < -error && max3(u, v, w) > error);

@@ -57,9 +57,7 @@ struct Triangle {
 };
 
 /// -0 becomes 0.
-constexpr Vec3f cleaned(Vec3f p) {
-  return {without_minus_zero(p.x), without_minus_zero(p.y), without_minus_zero(p.z)};
-}
+constexpr Vec3f cleaned(Vec3f p) { return {without_minus_zero(p.x), without_minus_zero(p.y), without_minus_zero(p.z)}; }
 
 /// Triangles that share vertices, in the caller's memory.
 struct TriangleMesh {

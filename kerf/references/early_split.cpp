@@ -74,18 +74,20 @@ std::optional<std::vector<Reference>> split_all(std::span<const Reference> whole
   return all;
 }
 
-/// Splits with the smallest sa_max, to 0.05 %, above `too_small` whose references fit. The count never grows with sa_max,
-/// because a piece lies within the box that it was cut from; so bisection finds it, on a logarithmic scale. A finer limit
-/// only cuts the pieces of a coarser one further, so each step starts from the finest pieces that fitted; the way down in
-/// large steps comes first, as few primitives are cut there.
+/// Splits with the smallest sa_max, to 0.05 %, above `too_small` whose references fit. The count never grows with
+/// sa_max, because a piece lies within the box that it was cut from; so bisection finds it, on a logarithmic scale. A
+/// finer limit only cuts the pieces of a coarser one further, so each step starts from the finest pieces that fitted;
+/// the way down in large steps comes first, as few primitives are cut there.
 EarlySplitResult split_to_fit(std::span<const Reference> whole, const Clipper& clipper, double too_small, size_t most) {
   EarlySplitResult result{{whole.begin(), whole.end()}, 0, true};
   for (const Reference& reference : whole) result.sa_max = std::max(result.sa_max, surface_area(reference.bounds()));
   bool found_too_small = false;
-  const auto enough = [&] { return static_cast<double>(result.references.size()) >= 0.999 * static_cast<double>(most); };
+  const auto enough = [&] {
+    return static_cast<double>(result.references.size()) >= 0.999 * static_cast<double>(most);
+  };
   while (result.sa_max > too_small * 1.0005 && !enough()) {
-    const double middle = found_too_small ? std::sqrt(result.sa_max) * std::sqrt(too_small)
-                                          : std::max(result.sa_max / 8, too_small);
+    const double middle =
+        found_too_small ? std::sqrt(result.sa_max) * std::sqrt(too_small) : std::max(result.sa_max / 8, too_small);
     if (!(too_small < middle && middle < result.sa_max)) break;
     if (auto finer = split_all(result.references, clipper, middle, most)) {
       result.references = std::move(*finer);

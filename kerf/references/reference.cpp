@@ -25,9 +25,12 @@ std::string describe(const Geometry& geometry, uint32_t primitive) {
       const uint32_t worst = *std::max_element(corners.begin(), corners.end());
       return "vertex number " + std::to_string(worst) + " of " + std::to_string(mesh.vertices.size()) + " vertices";
     }
-    case Defect::bad_coordinate: return "a coordinate that is not finite or beyond 1.3e36";
-    case Defect::bad_radius: return "a radius that is negative or not finite";
-    case Defect::none: break;
+    case Defect::bad_coordinate:
+      return "a coordinate that is not finite or beyond 1.3e36";
+    case Defect::bad_radius:
+      return "a radius that is negative or not finite";
+    case Defect::none:
+      break;
   }
   return "no defect";
 }
@@ -51,11 +54,11 @@ Block fill(const Geometry& geometry, uint32_t number, size_t begin, size_t end, 
 
 [[noreturn]] void refuse(std::span<const Geometry> geometries, uint32_t number, uint32_t primitive, size_t count) {
   const Geometry& geometry = geometries[number];
-  throw Error(ErrorCode::invalid_geometry,
-              "geometry " + std::to_string(number) + ", " + std::string(kind_name(geometry)) + " " +
-                  std::to_string(primitive),
-              describe(geometry, primitive) + "; " + std::to_string(count) +
-                  " such primitives in all (skip_invalid drops them)");
+  throw Error(
+      ErrorCode::invalid_geometry,
+      "geometry " + std::to_string(number) + ", " + std::string(kind_name(geometry)) + " " + std::to_string(primitive),
+      describe(geometry, primitive) + "; " + std::to_string(count) +
+          " such primitives in all (skip_invalid drops them)");
 }
 
 }  // namespace
@@ -75,9 +78,8 @@ PrimitiveReferences make_references(std::span<const Geometry> geometries, bool s
     const size_t count = primitive_count(geometry);
     std::vector<Block> blocks((count + kGrain - 1) / kGrain);
     Reference* out = result.references.data() + first;
-    parallel_for(count, kGrain, [&](size_t begin, size_t end) {
-      blocks[begin / kGrain] = fill(geometry, number, begin, end, out);
-    });
+    parallel_for(count, kGrain,
+                 [&](size_t begin, size_t end) { blocks[begin / kGrain] = fill(geometry, number, begin, end, out); });
     for (size_t b = 0; b < blocks.size(); ++b) {
       if (blocks[b].invalid > 0 && result.invalid == 0) {
         first_geometry = number;

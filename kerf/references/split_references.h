@@ -6,8 +6,8 @@
 
 namespace kerf {
 
-/// For builders other than Kerf's: the boxes of a mesh's triangles, large ones cut into several, each with the number of
-/// its triangle (`primitive`; `geometry` is 0). Feed them to any builder that takes boxes; a Reference has the very
+/// For builders other than Kerf's: the boxes of a mesh's triangles, large ones cut into several, each with the number
+/// of its triangle (`primitive`; `geometry` is 0). Feed them to any builder that takes boxes; a Reference has the very
 /// layout of Embree's RTCBuildPrimitive. Triangles without area get no box. The mesh is neither changed nor kept.
 /// Throws Error(invalid_geometry) for a triangle that is not finite or has a bad index, unless `skip_invalid`;
 /// Error(invalid_option) as early_split() does.

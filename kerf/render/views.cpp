@@ -26,8 +26,12 @@ const ViewEntry& entry_of(View view) { return kViews[static_cast<size_t>(view)];
 /// The values of one pixel, up to three.
 void write_values(const Scene& scene, View view, const Hit& hit, const TraceCounts& counts, float* out) {
   switch (view) {
-    case View::depth: out[0] = hit.t; break;
-    case View::primitive: out[0] = hit ? static_cast<float>(hit.primitive) : -1.0F; break;
+    case View::depth:
+      out[0] = hit.t;
+      break;
+    case View::primitive:
+      out[0] = hit ? static_cast<float>(hit.primitive) : -1.0F;
+      break;
     case View::normal: {
       const Vec3f normal = scene.normal(hit);
       for (uint32_t i = 0; i < 3; ++i) out[i] = normal[i];
@@ -38,8 +42,12 @@ void write_values(const Scene& scene, View view, const Hit& hit, const TraceCoun
       out[1] = hit.v;
       out[2] = 0;
       break;
-    case View::nodes: out[0] = static_cast<float>(counts.nodes); break;
-    case View::triangles: out[0] = static_cast<float>(counts.primitives); break;
+    case View::nodes:
+      out[0] = static_cast<float>(counts.nodes);
+      break;
+    case View::triangles:
+      out[0] = static_cast<float>(counts.primitives);
+      break;
   }
 }
 
@@ -55,7 +63,8 @@ Vec3f distinct_color(uint32_t number) {
 
 /// From dark blue over green and yellow to red, for x in [0, 1].
 Vec3f heat(float x) {
-  constexpr Vec3f kStops[] = {{0.05F, 0.05F, 0.3F}, {0.1F, 0.4F, 0.8F}, {0.2F, 0.75F, 0.4F}, {0.95F, 0.85F, 0.2F}, {0.85F, 0.1F, 0.1F}};
+  constexpr Vec3f kStops[] = {
+      {0.05F, 0.05F, 0.3F}, {0.1F, 0.4F, 0.8F}, {0.2F, 0.75F, 0.4F}, {0.95F, 0.85F, 0.2F}, {0.85F, 0.1F, 0.1F}};
   const float at = std::clamp(x, 0.0F, 1.0F) * 4;
   const auto stop = std::min(static_cast<uint32_t>(at), 3U);
   return kStops[stop] + (kStops[stop + 1] - kStops[stop]) * (at - static_cast<float>(stop));
@@ -79,14 +88,17 @@ Vec3f displayed_pixel(View view, const float* value, float least, float most) {
       const float gray = most > least ? 1 - 0.9F * (value[0] - least) / (most - least) : 1;
       return {gray, gray, gray};
     }
-    case View::primitive: return value[0] < 0 ? Vec3f{} : distinct_color(static_cast<uint32_t>(value[0]));
+    case View::primitive:
+      return value[0] < 0 ? Vec3f{} : distinct_color(static_cast<uint32_t>(value[0]));
     case View::normal: {
       const Vec3f normal{value[0], value[1], value[2]};
       return normal == Vec3f{} ? Vec3f{} : normal * 0.5F + Vec3f{0.5F, 0.5F, 0.5F};
     }
-    case View::uv: return {value[0], value[1], value[2]};
+    case View::uv:
+      return {value[0], value[1], value[2]};
     case View::nodes:
-    case View::triangles: return heat(most > 0 ? value[0] / most : 0);
+    case View::triangles:
+      return heat(most > 0 ? value[0] / most : 0);
   }
   return {};
 }

@@ -43,8 +43,8 @@ struct ViewResult {
 /// Traces one ray through the centre of each pixel.
 ViewResult render_view(const Scene& scene, const Camera& camera, const ViewOptions& options);
 
-/// A picture of a view's values to look at, in [0, 1]: depth from near (bright) to far, primitives in colours, normals as
-/// colours, counts as a heat map from 0 to the largest.
+/// A picture of a view's values to look at, in [0, 1]: depth from near (bright) to far, primitives in colours, normals
+/// as colours, counts as a heat map from 0 to the largest.
 Image displayed(View view, const Image& values);
 
 }  // namespace kerf

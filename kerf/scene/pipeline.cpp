@@ -10,7 +10,9 @@
 namespace kerf {
 namespace {
 
-bool is_name_character(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_'; }
+bool is_name_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
 
 /// Reads a pipeline from left to right.
 class Parser {
@@ -118,8 +120,10 @@ class Parser {
       const MenuEntry& entry = *pipeline.stages[i].entry;
       const std::string name(entry.name);
       if (i < last && entry.kind != "splitter") fail_at(starts_[i + 1], "nothing can follow " + name + " yet");
-      if (i == last && entry.kind == "splitter") fail_at(starts_[i], "a builder must follow " + name + ", as in " + name + "+binned_sah");
-      if (i > 0 && entry.kind == "structure") fail_at(starts_[i], name + " tests whole primitives: no splitter can stand before it");
+      if (i == last && entry.kind == "splitter")
+        fail_at(starts_[i], "a builder must follow " + name + ", as in " + name + "+binned_sah");
+      if (i > 0 && entry.kind == "structure")
+        fail_at(starts_[i], name + " tests whole primitives: no splitter can stand before it");
     }
   }
 

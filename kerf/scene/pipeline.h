@@ -22,8 +22,8 @@ struct Pipeline {
   std::string text() const;
 };
 
-/// Reads "early_split(sa_max=10)+binned_sah(bins=32)". Throws Error(invalid_option) whose place names the column and whose
-/// sentence has the nearest right word.
+/// Reads "early_split(sa_max=10)+binned_sah(bins=32)". Throws Error(invalid_option) whose place names the column and
+/// whose sentence has the nearest right word.
 Pipeline parse_pipeline(std::string_view text);
 
 /// Cuts a list of pipelines at the commas outside parentheses. Throws Error(invalid_option) for an empty member.

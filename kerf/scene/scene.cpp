@@ -16,7 +16,9 @@
 namespace kerf {
 namespace {
 
-[[noreturn]] void refuse_not_built() { throw Error(ErrorCode::not_built, "scene", "it has not been built; call build() first"); }
+[[noreturn]] void refuse_not_built() {
+  throw Error(ErrorCode::not_built, "scene", "it has not been built; call build() first");
+}
 
 constexpr TraceTable kNotBuilt = {
     [](const void*, const Ray&) -> Hit { refuse_not_built(); },

@@ -22,19 +22,19 @@ struct BuildOptions {
 
 /// What a build did and what came of it.
 struct BuildReport {
-  std::string structure;       ///< the pipeline in its canonical spelling
-  size_t primitives = 0;       ///< that the caller gave
-  size_t invalid = 0;          ///< of those: dropped because of skip_invalid
-  size_t degenerate = 0;       ///< of those: without area, so never hit and left out
-  size_t references = 0;       ///< in the leaves
+  std::string structure;                ///< the pipeline in its canonical spelling
+  size_t primitives = 0;                ///< that the caller gave
+  size_t invalid = 0;                   ///< of those: dropped because of skip_invalid
+  size_t degenerate = 0;                ///< of those: without area, so never hit and left out
+  size_t references = 0;                ///< in the leaves
   double references_per_primitive = 0;  ///< R: references / (primitives that were not dropped or left out); 0 if none
-  double sa_max = 0;           ///< the surface area limit that was used; infinite without splitting
-  bool capped = false;         ///< the limit asked for would have passed the cap on references, so it was raised
-  size_t bytes = 0;            ///< of what rays are traced through, without the caller's memory
+  double sa_max = 0;                    ///< the surface area limit that was used; infinite without splitting
+  bool capped = false;  ///< the limit asked for would have passed the cap on references, so it was raised
+  size_t bytes = 0;     ///< of what rays are traced through, without the caller's memory
   size_t nodes = 0, leaves = 0;
-  uint32_t depth = 0;          ///< edges from the root to the deepest leaf
-  double sah_cost = 0;         ///< see sah_cost()
-  uint64_t tree_hash = 0;      ///< equal for equal trees; 0 without a tree
+  uint32_t depth = 0;      ///< edges from the root to the deepest leaf
+  double sah_cost = 0;     ///< see sah_cost()
+  uint64_t tree_hash = 0;  ///< equal for equal trees; 0 without a tree
   struct Seconds {
     double references = 0, split = 0, build = 0, layout = 0, total = 0;
   } seconds;
@@ -47,10 +47,10 @@ struct BuildReport {
 ///     scene.build({.structure = "early_split(budget=1.5)+binned_sah"});
 ///     kerf::Hit hit = scene.closest_hit({.origin = {0, 0, 5}, .direction = {0, 0, -1}});
 ///
-/// The scene looks at the caller's memory and copies none of it: vertices and indices must stay unchanged until the next
-/// build or the scene's end. Queries are const and may come from any number of threads. Their outcome depends on neither
-/// the structure, the instruction set, the number of threads nor the caller's floating-point mode; among equally near
-/// primitives the one with the smaller geometry, then primitive number is hit.
+/// The scene looks at the caller's memory and copies none of it: vertices and indices must stay unchanged until the
+/// next build or the scene's end. Queries are const and may come from any number of threads. Their outcome depends on
+/// neither the structure, the instruction set, the number of threads nor the caller's floating-point mode; among
+/// equally near primitives the one with the smaller geometry, then primitive number is hit.
 class Scene {
  public:
   Scene();

@@ -16,7 +16,9 @@ class BruteForce {
   BruteForce() = default;
   BruteForce(std::span<const Geometry> geometries, std::span<const LeafSlot> slots);
 
-  size_t bytes() const { return triangles_.bytes() + (triangle_slots_.size() + other_slots_.size()) * sizeof(LeafSlot); }
+  size_t bytes() const {
+    return triangles_.bytes() + (triangle_slots_.size() + other_slots_.size()) * sizeof(LeafSlot);
+  }
 
   template <bool kAny, class Counts>
   Hit trace(const Ray& ray, Counts& counts) const;

@@ -11,8 +11,8 @@ namespace kerf {
 /// A plane's distance (b - o) * (1 / d) is off by three roundings, 3 e M in position, where M is the distance from the
 /// origin to the farthest side of the scene and e = 2^-24; the primitive tests, in double, are off by far less. So the
 /// origin is moved by 8 e M, up for lower sides and down for upper ones: entries come out early and exits late by more
-/// than any error, at no cost per node (the idea: Woop, Benthin, Wald 2013, section 4). A direction component of 0 gives
-/// infinities of the right sign, and a NaN from 0 * infinity is ignored by the order of the comparisons below.
+/// than any error, at no cost per node (the idea: Woop, Benthin, Wald 2013, section 4). A direction component of 0
+/// gives infinities of the right sign, and a NaN from 0 * infinity is ignored by the order of the comparisons below.
 struct BoxRay {
   Vec3f origin_near, origin_far;  ///< moved towards the near and the far sides' safe direction
   Vec3f inverse;

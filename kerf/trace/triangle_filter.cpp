@@ -46,8 +46,8 @@ size_t filter(const TriangleColumns& triangles, const PreparedRay& ray, size_t b
     // Overflow makes NaN, and what Max does with one differs: so a triangle is left out only where u, v and w are all
     // numbers, which the sums below tell.
     const auto is_number = hn::Eq(hn::Mul(hn::Add(hn::Add(u, v), w), hn::Zero(d)), hn::Zero(d));
-    const auto outside = hn::And(hn::Lt(hn::Min(hn::Min(u, v), w), hn::Neg(error)),
-                                 hn::Gt(hn::Max(hn::Max(u, v), w), error));
+    const auto outside =
+        hn::And(hn::Lt(hn::Min(hn::Min(u, v), w), hn::Neg(error)), hn::Gt(hn::Max(hn::Max(u, v), w), error));
     const auto may_hit = hn::Not(hn::And(outside, is_number));
     if (hn::AllFalse(d, may_hit)) continue;
     const auto numbers = hn::Iota(du, static_cast<uint32_t>(i));

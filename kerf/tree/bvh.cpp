@@ -78,7 +78,8 @@ std::optional<std::string> find_slot_fault(const Bvh& bvh, std::span<const Geome
   }
   SlotCounts counts(bvh, geometries);
   for (size_t i = 0; i < bvh.slots.size(); ++i) {
-    if ((counts.of(bvh.slots[i]) > 1) != bvh.slots[i].is_repeated()) return at("slot", i) + " has the wrong repeat mark";
+    if ((counts.of(bvh.slots[i]) > 1) != bvh.slots[i].is_repeated())
+      return at("slot", i) + " has the wrong repeat mark";
   }
   return std::nullopt;
 }
@@ -170,7 +171,7 @@ std::optional<std::string> find_fault(const Bvh& bvh, std::span<const Geometry> 
   std::vector<bool> node_seen(bvh.nodes.size()), slot_used(bvh.slots.size());
   std::optional<std::string> fault;
   visit(bvh, [&](uint32_t number, uint32_t depth) {
-    std::string what = node_seen[number] ? "is reached twice"
+    std::string what = node_seen[number]   ? "is reached twice"
                        : depth > max_depth ? "is deeper than " + std::to_string(max_depth)
                                            : find_node_fault(bvh, number, largest_leaf, slot_used);
     node_seen[number] = true;

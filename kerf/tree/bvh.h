@@ -52,15 +52,15 @@ struct Bvh {
 /// What a tree looks like.
 struct BvhStatistics {
   size_t nodes = 0, leaves = 0;
-  uint32_t depth = 0;        ///< edges from the root to the deepest leaf
+  uint32_t depth = 0;         ///< edges from the root to the deepest leaf
   uint32_t largest_leaf = 0;  ///< slots
-  double sah_cost = 0;       ///< see sah_cost()
+  double sah_cost = 0;        ///< see sah_cost()
 };
 BvhStatistics measure(const Bvh& bvh);
 
-/// The surface area heuristic (Goldsmith and Salmon 1987; MacDonald and Booth 1990): the sum over nodes of area / area of
-/// the root, times 1 for an inner node and times the number of slots for a leaf. 0 for an empty tree. Leaves and inner
-/// nodes cost as given.
+/// The surface area heuristic (Goldsmith and Salmon 1987; MacDonald and Booth 1990): the sum over nodes of area / area
+/// of the root, times 1 for an inner node and times the number of slots for a leaf. 0 for an empty tree. Leaves and
+/// inner nodes cost as given.
 double sah_cost(const Bvh& bvh, double inner_cost = 1, double primitive_cost = 1);
 
 /// A number that is equal for equal trees, whatever the machine: every node and slot counts.

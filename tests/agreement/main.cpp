@@ -6,8 +6,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <fstream>
 #include <array>
+#include <fstream>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -141,9 +141,9 @@ Tally compare(const Mesh& mesh, const Expected& expected, const std::string& str
 
 void print_row(const std::string& scene, const std::string& turn, const std::string& structure, const Tally& t) {
   fmt::print("{:<15} {:<8} {:<40} {:>8} {:>8} {:>6} {:>6} {:>6} {:>6} {:>6} {:>9.2g} {:>7} {:>6}{}\n", scene, turn,
-             structure, t.rays, t.hits, t.of(Verdict::edge_tie), t.of(Verdict::coincident),
-             t.of(Verdict::oracle_wrong), t.of(Verdict::unexplained), t.deep, t.depth_difference, t.brute_rays,
-             t.brute_different, t.is_good() ? "" : "  FAILED");
+             structure, t.rays, t.hits, t.of(Verdict::edge_tie), t.of(Verdict::coincident), t.of(Verdict::oracle_wrong),
+             t.of(Verdict::unexplained), t.deep, t.depth_difference, t.brute_rays, t.brute_different,
+             t.is_good() ? "" : "  FAILED");
   std::fflush(stdout);
 }
 
