@@ -16,14 +16,14 @@ constexpr float next_below(float x) {
 
 constexpr float next_above(float x) { return -next_below(-x); }
 
-/// The largest float that is at most x.
+/// The largest float that is at most x; never -0.
 constexpr float round_down(double x) {
-  const auto nearest = static_cast<float>(x);
+  const float nearest = static_cast<float>(x) + 0.0F;
   return static_cast<double>(nearest) > x ? next_below(nearest) : nearest;
 }
 
-/// The smallest float that is at least x.
-constexpr float round_up(double x) { return -round_down(-x); }
+/// The smallest float that is at least x; never -0.
+constexpr float round_up(double x) { return 0.0F - round_down(-x); }
 
 /// -0 becomes 0, all else stays: boxes, ties and hashes then see one zero.
 constexpr float without_minus_zero(float x) { return x + 0.0F; }

@@ -10,11 +10,11 @@
 namespace kerf {
 namespace {
 
-/// A corner of the polygon while it is cut: one that was there, or one computed on an edge (off by a few roundings).
-/// Without initial values, because arrays of it are made for every cut.
+/// A corner of the polygon while it is cut, and how far it may be off along any axis: 0 for one that was there. Without
+/// initial values, because arrays of it are made for every cut.
 struct Corner {
   double point[3];
-  bool computed;
+  double error;
 };
 
 /// Six cuts let a polygon of four corners grow to ten; rounding that dents it can at most double that again.
@@ -30,24 +30,36 @@ struct Polygon {
   }
 };
 
-Corner cut_edge(const Corner& p, const Corner& q, uint32_t axis, double position) {
-  const double share = (position - p.point[axis]) / (q.point[axis] - p.point[axis]);
+/// Where an edge crosses a plane that it hardly leans against, a small error of its ends moves the crossing far along
+/// it, though never past them.
+Corner cut_edge(const Corner& p, const Corner& q, uint32_t axis, double position, double rounding) {
+  const double across = q.point[axis] - p.point[axis];
+  const double share = (position - p.point[axis]) / across;
+  const double share_error = std::min(1.0, (p.error + q.error) / std::abs(across));
   Corner cut;
-  for (uint32_t i = 0; i < 3; ++i) cut.point[i] = p.point[i] + (q.point[i] - p.point[i]) * share;
+  double longest = 0;
+  for (uint32_t i = 0; i < 3; ++i) {
+    const double along = q.point[i] - p.point[i];
+    cut.point[i] = p.point[i] + along * share;
+    longest = std::max(longest, std::abs(along));
+  }
   cut.point[axis] = position;
-  cut.computed = true;
+  cut.error = std::max(p.error, q.error) + longest * share_error + rounding;
   return cut;
 }
 
-/// Keeps the side of the plane where sign * (x - position) >= 0 (Sutherland and Hodgman 1974, one plane).
-void keep_side(const Polygon& from, Polygon& to, uint32_t axis, double position, double sign) {
+/// Keeps the side of the plane where sign * (x - position) >= 0 (Sutherland and Hodgman 1974, one plane), and corners
+/// that may lie there.
+void keep_side(const Polygon& from, Polygon& to, uint32_t axis, double position, double sign, double rounding) {
   to.size = 0;
   for (size_t i = 0; i < from.size; ++i) {
     const Corner& p = from.corners[i];
     const Corner& q = from.corners[i + 1 == from.size ? 0 : i + 1];
     const double p_side = sign * (p.point[axis] - position), q_side = sign * (q.point[axis] - position);
-    if (p_side >= 0) to.push(p);
-    if ((p_side > 0 && q_side < 0) || (p_side < 0 && q_side > 0)) to.push(cut_edge(p, q, axis, position));
+    if (p_side >= -p.error) to.push(p);
+    if ((p_side > 0 && q_side < 0) || (p_side < 0 && q_side > 0)) {
+      to.push(cut_edge(p, q, axis, position, rounding));
+    }
   }
 }
 
@@ -63,33 +75,34 @@ Box3f clipped_bounds(std::span<const Vec3d> polygon, const Box3f& cell) {
   Polygon *current = &buffers[0], *next = &buffers[1];
   Vec3d lower = polygon[0], upper = polygon[0];
   for (const Vec3d& p : polygon) {
-    current->push({{p.x, p.y, p.z}, false});
+    current->push({{p.x, p.y, p.z}, 0});
     lower = min(lower, p);
     upper = max(upper, p);
   }
-  const double slack = 0x1p-49 * largest(max(abs(lower), abs(upper)));  // six cuts, a few roundings each
+  const double rounding = 0x1p-51 * largest(max(abs(lower), abs(upper)));  // of one cut
   for (uint32_t axis = 0; axis < 3; ++axis) {
     if (lower[axis] < cell.lower[axis]) {
-      keep_side(*current, *next, axis, cell.lower[axis], 1);
+      keep_side(*current, *next, axis, cell.lower[axis], 1, rounding);
       std::swap(current, next);
     }
     if (upper[axis] > cell.upper[axis]) {
-      keep_side(*current, *next, axis, cell.upper[axis], -1);
+      keep_side(*current, *next, axis, cell.upper[axis], -1, rounding);
       std::swap(current, next);
     }
   }
   if (current->size == 0) return {};
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const Vec3d whole_lower = lower, whole_upper = upper;
   lower = {kInfinity, kInfinity, kInfinity};
   upper = -lower;
   for (const Corner& corner : std::span(current->corners, current->size)) {
-    const double off = corner.computed ? slack : 0;
     for (uint32_t axis = 0; axis < 3; ++axis) {
-      lower[axis] = std::min(lower[axis], corner.point[axis] - off);
-      upper[axis] = std::max(upper[axis], corner.point[axis] + off);
+      lower[axis] = std::min(lower[axis], corner.point[axis] - corner.error);
+      upper[axis] = std::max(upper[axis], corner.point[axis] + corner.error);
     }
   }
-  const Box3f bounds = intersected(outward(lower, upper), cell);
+  // No part reaches past the whole, so the allowance must not either: flat stays flat.
+  const Box3f bounds = intersected(outward(max(lower, whole_lower), min(upper, whole_upper)), cell);
   return bounds.is_empty() ? Box3f{} : bounds;
 }
 

@@ -45,12 +45,12 @@ inline bool intersect(const PreparedRay& ray, const Sphere& sphere, float limit,
   const double inside = radius * radius - dot(offset, offset);
   if (!(inside >= 0) || is_degenerate(sphere)) return false;
   const double half = std::sqrt(inside / length2);
-  double t = closest - half;
-  if (!accept_t(ray, t, limit, crossing)) {
-    t = closest + half;
-    if (!accept_t(ray, t, limit, crossing)) return false;
+  double from_closest = -half;
+  if (!accept_t(ray, closest + from_closest, limit, crossing)) {
+    from_closest = half;
+    if (!accept_t(ray, closest + from_closest, limit, crossing)) return false;
   }
-  detail::octahedral(from_center + t * ray.direction_d, crossing);
+  detail::octahedral(offset + from_closest * ray.direction_d, crossing);
   return true;
 }
 

@@ -86,8 +86,8 @@ EarlySplitResult split_to_fit(std::span<const Reference> whole, const Clipper& c
     return static_cast<double>(result.references.size()) >= 0.999 * static_cast<double>(most);
   };
   while (result.sa_max > too_small * 1.0005 && !enough()) {
-    const double middle =
-        found_too_small ? std::sqrt(result.sa_max) * std::sqrt(too_small) : std::max(result.sa_max / 8, too_small);
+    found_too_small = found_too_small || result.sa_max / 8 <= too_small;
+    const double middle = found_too_small ? std::sqrt(result.sa_max) * std::sqrt(too_small) : result.sa_max / 8;
     if (!(too_small < middle && middle < result.sa_max)) break;
     if (auto finer = split_all(result.references, clipper, middle, most)) {
       result.references = std::move(*finer);
@@ -113,7 +113,7 @@ EarlySplitResult early_split(std::span<const Reference> whole, const Clipper& cl
   }
   if (std::isinf(options.sa_max)) return {{whole.begin(), whole.end()}, options.sa_max, false};
   const double allowed = std::floor(options.cap * static_cast<double>(whole.size()));
-  const auto most = static_cast<size_t>(std::min(allowed, static_cast<double>(kMaxReferences)));
+  const auto most = static_cast<size_t>(std::min(static_cast<double>(kMaxReferences), allowed));
   if (auto references = split_all(whole, clipper, options.sa_max, most)) {
     return {std::move(*references), options.sa_max, false};
   }

@@ -182,6 +182,7 @@ Box3f Scene::bounds() const {
 
 Vec3f Scene::normal(const Hit& hit) const {
   if (built_ == nullptr) refuse_not_built();
+  const StandardFloat standard;
   return hit ? unit_normal(built_->geometries[hit.geometry], hit.primitive, hit.u, hit.v) : Vec3f{};
 }
 
