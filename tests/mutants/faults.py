@@ -90,7 +90,7 @@ FAULTS = [
     Fault("masks ignored", "kerf/trace/leaf.h",
           "(geometry.mask & ray.mask) == 0", "false", "nasty_test"),
     Fault("the caller's flush-to-zero let in", "kerf/trace/trace_bvh2.cpp",
-          "const StandardFloat standard;", "", "geometry_test nasty_test"),
+          "const StandardFloat standard;", "", "scene_test"),
     Fault("invalid primitives skipped without being asked", "kerf/references/reference.cpp",
           "if (result.invalid > 0 && !skip_invalid)", "if (result.invalid > 0 && skip_invalid)",
           "early_split_test nasty_test"),
