@@ -45,14 +45,16 @@ TEST(Camera, FramingSeesTheWholeBox) {
         const double distance = std::sqrt(dot(view, view));
         EXPECT_GT(distance, 0);
         if (box.is_empty()) continue;
-        const double half = camera.fov * 3.14159265358979 / 360;
+        const double tangent = std::tan(camera.fov * 3.14159265358979 / 360);
+        const Vec3d side = cross(view, up), above = cross(side, view);
         for (int corner = 0; corner < 8; ++corner) {
           const Vec3d p{(corner & 1) != 0 ? box.upper.x : box.lower.x, (corner & 2) != 0 ? box.upper.y : box.lower.y,
                         (corner & 4) != 0 ? box.upper.z : box.lower.z};
           const Vec3d to = p - camera.eye;
           const double along = dot(to, view) / distance;
-          const double across = std::sqrt(std::max(0.0, dot(to, to) - along * along));
-          EXPECT_LE(across / along, std::tan(std::min(half, std::atan(std::tan(half) * aspect))) * 1.0001);
+          EXPECT_GT(along, 0);
+          EXPECT_LE(std::abs(dot(to, side)) / std::sqrt(dot(side, side)) / along, tangent * aspect);
+          EXPECT_LE(std::abs(dot(to, above)) / std::sqrt(dot(above, above)) / along, tangent);
         }
       }
     }

@@ -23,13 +23,23 @@ Camera framing_camera(const Box3f& bounds, double aspect, Vec3d up, double fov) 
   const Vec3d lower = is_empty ? Vec3d{-0.5, -0.5, -0.5} : to_double(bounds.lower);
   const Vec3d upper = is_empty ? Vec3d{0.5, 0.5, 0.5} : to_double(bounds.upper);
   camera.look_at = (lower + upper) * 0.5;
-  double radius = length(upper - lower) * 0.5;
-  if (!(radius > 0)) radius = std::max(1.0, largest(abs(camera.look_at))) * 1e-3;
-  // The sphere around the box must fit the narrower of the two fields of view.
-  const double half_vertical = fov * std::numbers::pi / 360;
-  const double half = std::min(half_vertical, std::atan(std::tan(half_vertical) * aspect));
   const Vec3d to_eye = std::abs(up.z) > std::abs(up.y) ? Vec3d{0.6, -1, 0.45} : Vec3d{0.6, 0.45, 1};
-  camera.eye = camera.look_at + to_eye * (radius / std::sin(half) / length(to_eye));
+  const Vec3d backward = to_eye / length(to_eye);
+  const Vec3d side = cross(up, backward), right = side / length(side), above = cross(backward, right);
+  const double tangent_up = std::tan(fov * std::numbers::pi / 360), tangent_right = tangent_up * aspect;
+  // From each corner of the box on, both fields of view must be wide enough.
+  double distance = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3d p{(corner & 1) != 0 ? upper.x : lower.x, (corner & 2) != 0 ? upper.y : lower.y,
+                  (corner & 4) != 0 ? upper.z : lower.z};
+    const Vec3d offset = p - camera.look_at;
+    const double needed =
+        std::max(std::abs(dot(offset, right)) / tangent_right, std::abs(dot(offset, above)) / tangent_up);
+    distance = std::max(distance, needed + dot(offset, backward));
+  }
+  if (!(distance > 0)) distance = std::max(1.0, largest(abs(camera.look_at))) * 1e-3;
+  constexpr double kMargin = 1.05;
+  camera.eye = camera.look_at + backward * (distance * kMargin);
   return camera;
 }
 
