@@ -247,7 +247,8 @@ py::list menu_list() {
     py::list options;
     for (const OptionSpec& spec : entry.options) {
       options.append(py::dict("name"_a = spec.name, "sentence"_a = spec.sentence, "default"_a = spec.fallback,
-                              "least"_a = spec.least, "most"_a = spec.most, "whole"_a = spec.whole));
+                              "least"_a = spec.least, "above_least"_a = spec.above_least, "most"_a = spec.most,
+                              "whole"_a = spec.whole));
     }
     all.append(py::dict("kind"_a = entry.kind, "name"_a = entry.name, "sentence"_a = entry.sentence,
                         "source"_a = entry.source, "options"_a = options));

@@ -52,7 +52,7 @@ TEST(Pipeline, RefusesWithTheColumnAndTheNearestWord) {
       refusal("early_split(samax=10)+binned_sah"),
       "structure 'early_split(samax=10)+binned_sah', column 13: early_split: unknown option 'samax'; did you mean "
       "'sa_max'?");
-  EXPECT_NE(refusal("zzz").find("there are early_split, binned_sah"), std::string::npos);
+  EXPECT_NE(refusal("zzz").find("expected early_split, binned_sah"), std::string::npos);
 }
 
 TEST(Pipeline, RefusesEveryKindOfMistake) {
@@ -78,6 +78,7 @@ TEST(Pipeline, RefusesEveryKindOfMistake) {
                            "binned_sah+early_split",
                            "early_split",
                            "early_split+brute_force",
+                           "early_split(budget=2)+early_split(budget=2)+binned_sah",
                            "early_split(sa_max=0)+binned_sah",
                            "early_split(sa_max=-1)+binned_sah",
                            "early_split(sa_max=nan)+binned_sah",

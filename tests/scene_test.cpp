@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -243,6 +244,26 @@ TEST(Scene, TheCallersFloatingPointModeChangesNothing) {
   }
 }
 #endif
+
+TEST(Scene, RefusesNullPointersAndCountsBeyondItsNumbers) {
+  const auto code_of = [](const Geometry& geometry) {
+    Scene scene;
+    scene.add(geometry);
+    try {
+      scene.build();
+    } catch (const Error& error) {
+      return std::optional(error.code());
+    }
+    return std::optional<ErrorCode>();
+  };
+  const Vec3f vertex;
+  EXPECT_EQ(code_of({TriangleMesh{{&vertex, 1}, {nullptr, 3}}}), ErrorCode::invalid_argument);
+  EXPECT_EQ(code_of({TriangleMesh{{nullptr, 1}, {}}}), ErrorCode::invalid_argument);
+  EXPECT_EQ(code_of({Strided<Sphere>(nullptr, 1)}), ErrorCode::invalid_argument);
+  EXPECT_EQ(code_of({Strided<Parallelogram>(nullptr, 1)}), ErrorCode::invalid_argument);
+  EXPECT_EQ(code_of({Strided<Sphere>(&vertex, size_t{1} << 63)}), ErrorCode::too_large);
+  EXPECT_EQ(code_of({TriangleMesh{}}), std::nullopt);
+}
 
 }  // namespace
 }  // namespace kerf::test

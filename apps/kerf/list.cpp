@@ -26,6 +26,7 @@ nlohmann::ordered_json menu_json() {
                          {"default", number(spec.fallback)},
                          {"least", number(spec.least)},
                          {"most", number(spec.most)},
+                         {"above_least", spec.above_least},
                          {"whole", spec.whole}});
     }
     all.push_back({{"kind", entry.kind},
@@ -33,6 +34,13 @@ nlohmann::ordered_json menu_json() {
                    {"sentence", entry.sentence},
                    {"source", entry.source},
                    {"options", options}});
+  }
+  for (const ViewEntry& view : views()) {
+    all.push_back({{"kind", "view"},
+                   {"name", view.name},
+                   {"sentence", view.sentence},
+                   {"source", ""},
+                   {"options", nlohmann::ordered_json::array()}});
   }
   return all;
 }
@@ -61,6 +69,9 @@ void add_list(CLI::App& app, std::function<int()>& run) {
   command->footer("Example: kerf list --json -");
   auto json = std::make_shared<std::string>();
   command->add_option("--json", *json, "Write the menu to this file as JSON; '-' is standard output");
+  command->add_option_function<int>(
+      "--threads", [](int) {}, "Accepted, as by every command; there is nothing to share");
+  command->add_flag("--quiet")->description("Accepted, as by every command; only what was asked for is printed anyway");
   command->callback([json, &run] {
     run = [json] {
       if (json->empty()) {

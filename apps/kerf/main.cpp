@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdio>
 #include <exception>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "kerf/base/parallel.h"
 #include "kerf/base/version.h"
 #include "kerf/io/output_file.h"
+#include "kerf/trace/triangle_filter.h"
 
 namespace kerf::app {
 namespace {
@@ -58,7 +60,8 @@ int refuse_extras(const CLI::App& app, const std::vector<std::string>& extras) {
 int run(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a reader that went away is an error of write(), not the end of the program
   CLI::App app("Finds what rays hit in scenes with large and long thin triangles.", "kerf");
-  app.set_version_flag("--version", fmt::format("kerf {} (tasks: {})", kVersion, task_backend()));
+  app.set_version_flag("--version", fmt::format("kerf {} (tasks: {}, SIMD: {})", kVersion, task_backend(),
+                                                triangle_kernels().instruction_set));
   app.allow_extras();  // to name the nearest word, which CLI11 does not
   app.footer("Example: kerf render bunny.ply -o bunny.png --view normal");
   std::function<int()> command;
@@ -103,10 +106,17 @@ bool interrupted() { return interrupt_seen != 0; }
 
 int main(int argc, char** argv) {
   try {
-    return kerf::app::run(argc, argv);
+    const int code = kerf::app::run(argc, argv);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      fmt::print(stderr, "kerf: standard output cannot be written\n");
+      return kerf::app::kBadInput;
+    }
+    return code;
   } catch (const kerf::Error& error) {
     fmt::print(stderr, "kerf: {}\n", error.what());
-    return error.code() == kerf::ErrorCode::invalid_option ? kerf::app::kUsage : kerf::app::kBadInput;
+    const bool is_usage =
+        error.code() == kerf::ErrorCode::invalid_option || error.code() == kerf::ErrorCode::invalid_argument;
+    return is_usage ? kerf::app::kUsage : kerf::app::kBadInput;
   } catch (const std::bad_alloc&) {
     fmt::print(stderr, "kerf: not enough memory\n");
     return kerf::app::kBadInput;

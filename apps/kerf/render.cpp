@@ -15,6 +15,7 @@
 #include "kerf/io/image_write.h"
 #include "kerf/io/ply.h"
 #include "kerf/render/views.h"
+#include "kerf/scene/pipeline.h"
 
 namespace kerf::app {
 namespace {
@@ -36,10 +37,7 @@ const ViewEntry& find_view(const std::string& name) {
     if (entry.name == name) return entry;
     names.push_back(entry.name);
   }
-  const std::string_view near = nearest_word(name, names);
-  throw Error(ErrorCode::invalid_option, "--view",
-              fmt::format("unknown view '{}'{}", name,
-                          near.empty() ? "; see kerf list" : fmt::format("; did you mean '{}'?", near)));
+  throw Error(ErrorCode::invalid_option, "--view", fmt::format("unknown view '{}'{}", name, suggestion(name, names)));
 }
 
 std::array<uint32_t, 2> parse_size(const std::string& text) {
@@ -137,9 +135,14 @@ Json result_json(const Arguments& arguments, const BuildReport& report, const Vi
           {"scene", report_json(report)}};
 }
 
-bool ends_with_pfm(const std::string& path) {
-  const std::string extension = std::filesystem::path(path).extension().string();
-  return extension == ".pfm" || extension == ".PFM";
+/// Finds mistakes in the words before any work is done: the structure, the output's format and folder.
+void check_words(const Arguments& arguments) {
+  parse_pipeline(arguments.structure);
+  image_format(arguments.output);
+  const std::filesystem::path folder = std::filesystem::path(arguments.output).parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder)) {
+    throw Error(ErrorCode::file, arguments.output, "there is no folder " + folder.string());
+  }
 }
 
 int render(Arguments arguments) {
@@ -148,6 +151,7 @@ int render(Arguments arguments) {
   }
   const ViewEntry& view = find_view(arguments.view);
   const auto [width, height] = parse_size(arguments.size);
+  check_words(arguments);
   const Mesh mesh = read_ply(arguments.input);
   if (mesh.triangles.empty())
     throw Error(ErrorCode::file, arguments.input, "there is no face in it, so nothing to see");
@@ -167,7 +171,8 @@ int render(Arguments arguments) {
     watch_interrupts();
     result = render_view(scene, camera, {view.view, width, height, arguments.threads, std::ref(bar)});
   }
-  write_image(arguments.output, ends_with_pfm(arguments.output) ? result.values : displayed(view.view, result.values));
+  const bool as_values = image_format(arguments.output) == ImageFormat::pfm;
+  write_image(arguments.output, as_values ? result.values : displayed(view.view, result.values));
   if (!arguments.json.empty()) write_json(arguments.json, result_json(arguments, report, result).dump(2));
   if (!arguments.quiet) {
     fmt::print(stderr, "{} {} in {:.2f} s, built in {:.2f} s\n", arguments.output,

@@ -47,4 +47,17 @@ std::string_view nearest_word(std::string_view word, std::span<const std::string
   return found;
 }
 
+std::string suggestion(std::string_view word, std::span<const std::string_view> menu) {
+  std::string sentence;
+  if (const std::string_view nearest = nearest_word(word, menu); !nearest.empty()) {
+    return sentence.append("; did you mean '").append(nearest).append("'?");
+  }
+  sentence = "; expected ";
+  for (size_t i = 0; i < menu.size(); ++i) {
+    if (i > 0) sentence += i + 1 < menu.size() ? ", " : " or ";
+    sentence += menu[i];
+  }
+  return sentence;
+}
+
 }  // namespace kerf

@@ -18,16 +18,11 @@ const OptionSpec* find(std::span<const OptionSpec> specs, std::string_view name)
 }
 
 std::string unknown_option(std::span<const OptionSpec> specs, std::string_view name) {
-  std::string sentence = "unknown option '" + std::string(name) + "'";
+  const std::string sentence = "unknown option '" + std::string(name) + "'";
   if (specs.empty()) return sentence + "; it takes none";
   std::vector<std::string_view> names;
   for (const OptionSpec& spec : specs) names.push_back(spec.name);
-  if (const std::string_view near = nearest_word(name, names); !near.empty()) {
-    return sentence + "; did you mean '" + std::string(near) + "'?";
-  }
-  sentence += "; there are ";
-  for (size_t i = 0; i < names.size(); ++i) sentence += (i > 0 ? ", " : "") + std::string(names[i]);
-  return sentence;
+  return sentence + suggestion(name, names);
 }
 
 std::string range_text(const OptionSpec& spec) {

@@ -5,6 +5,8 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <optional>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -61,15 +63,21 @@ class FirstException {
   std::exception_ptr first_;
 };
 
-/// Starts f on a thread of the budget; the thread gives its place back at its end.
+/// Starts f on a thread if one of the budget is free and the system gives one; it returns its place at its end.
 template <class F>
-std::thread start(Budget& from, FirstException& failure, F f) {
-  return std::thread([&from, &failure, f] {
-    const StandardFloat standard;
-    current_budget = &from;
-    failure.guard(f);
+std::optional<std::thread> try_start(Budget& from, FirstException& failure, F f) {
+  if (!from.take()) return std::nullopt;
+  try {
+    return std::thread([&from, &failure, f] {
+      const StandardFloat standard;
+      current_budget = &from;
+      failure.guard(f);
+      from.give_back();
+    });
+  } catch (const std::system_error&) {  // no more threads or memory: the caller does the work
     from.give_back();
-  });
+    return std::nullopt;
+  }
 }
 
 }  // namespace
@@ -92,8 +100,12 @@ void run_parallel_for(size_t count, size_t grain, void (*body)(void*, size_t, si
   };
   FirstException failure;
   std::vector<std::thread> threads;
-  Budget& shared = budget();
-  while (threads.size() + 1 < blocks && shared.take()) threads.push_back(start(shared, failure, work));
+  threads.reserve(std::min<size_t>(blocks, static_cast<size_t>(thread_count())));  // so that push_back cannot throw
+  while (threads.size() + 1 < blocks && threads.size() < threads.capacity()) {
+    std::optional<std::thread> thread = try_start(budget(), failure, work);
+    if (!thread) break;
+    threads.push_back(std::move(*thread));
+  }
   failure.guard(work);
   for (std::thread& thread : threads) thread.join();
   failure.rethrow();
@@ -101,16 +113,14 @@ void run_parallel_for(size_t count, size_t grain, void (*body)(void*, size_t, si
 
 void run_parallel_invoke(void (*body)(void*, int), void* data) {
   const StandardFloat standard;
-  Budget& shared = budget();
-  if (!shared.take()) {
-    body(data, 0);
-    body(data, 1);
-    return;
-  }
   FirstException failure;
-  std::thread other = start(shared, failure, [=] { body(data, 1); });
+  std::optional<std::thread> other = try_start(budget(), failure, [=] { body(data, 1); });
   failure.guard([&] { body(data, 0); });
-  other.join();
+  if (other) {
+    other->join();
+  } else {
+    failure.guard([&] { body(data, 1); });
+  }
   failure.rethrow();
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 
 #include "kerf/base/rounding.h"
@@ -24,9 +23,11 @@ struct Polygon {
   size_t size = 0;
   Corner corners[kCapacity];
 
+  bool overflowed = false;
+
   void push(const Corner& corner) {
-    assert(size < kCapacity);
-    corners[size++] = corner;
+    overflowed = overflowed || size == kCapacity;
+    if (!overflowed) corners[size++] = corner;
   }
 };
 
@@ -89,6 +90,9 @@ Box3f clipped_bounds(std::span<const Vec3d> polygon, const Box3f& cell) {
       keep_side(*current, *next, axis, cell.upper[axis], -1, rounding);
       std::swap(current, next);
     }
+  }
+  if (buffers[0].overflowed || buffers[1].overflowed) {  // never seen; the whole cell is safe
+    return intersected(outward(lower, upper), cell);
   }
   if (current->size == 0) return {};
   constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -26,8 +26,8 @@ inline bool intersect(const PreparedRay& ray, const Parallelogram& shape, float 
   const double share_v = std::clamp(edge(p0, u) / det, 0.0, 1.0);
   const double depth = p0.z + share_u * u.z + share_v * v.z;
   if (!accept_t(ray, depth / ray.direction_d[ray.kz], limit, crossing) || is_degenerate(shape)) return false;
-  crossing.u = static_cast<float>(share_u);
-  crossing.v = static_cast<float>(share_v);
+  crossing.u = without_minus_zero(static_cast<float>(share_u));
+  crossing.v = without_minus_zero(static_cast<float>(share_v));
   return true;
 }
 

@@ -49,8 +49,8 @@ inline bool intersect(const PreparedRay& ray, const Triangle& triangle, float li
   if (det == 0) return false;
   const double depth = (u * a.z + v * b.z + w * c.z) / det;
   if (!accept_t(ray, depth / ray.direction_d[ray.kz], limit, crossing) || is_degenerate(triangle)) return false;
-  crossing.u = static_cast<float>(v / det);
-  crossing.v = static_cast<float>(w / det);
+  crossing.u = without_minus_zero(static_cast<float>(v / det));
+  crossing.v = without_minus_zero(static_cast<float>(w / det));
   return true;
 }
 

@@ -102,8 +102,12 @@ void write_png(const std::string& path, const Image& image) {
 }
 
 void write_image(const std::string& path, const Image& image) {
-  if (has_extension(path, ".png")) return write_png(path, image);
-  if (has_extension(path, ".pfm")) return write_pfm(path, image);
+  image_format(path) == ImageFormat::png ? write_png(path, image) : write_pfm(path, image);
+}
+
+ImageFormat image_format(const std::string& path) {
+  if (has_extension(path, ".png")) return ImageFormat::png;
+  if (has_extension(path, ".pfm")) return ImageFormat::pfm;
   throw Error(ErrorCode::file, path, "has an unknown image format; .png and .pfm can be written");
 }
 

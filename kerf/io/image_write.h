@@ -17,6 +17,11 @@ void write_pfm(const std::string& path, const Image& image);
 /// Throws Error (invalid_argument) for an image of more than 2^29 bytes.
 void write_png(const std::string& path, const Image& image);
 
+enum class ImageFormat { png, pfm };
+
+/// The format that the end of a path names, in any case of letters. Throws Error (file) for one that cannot be written.
+ImageFormat image_format(const std::string& path);
+
 /// Writes in the format that the end of the path names, .png or .pfm in any case. Throws Error (file) for any other.
 void write_image(const std::string& path, const Image& image);
 

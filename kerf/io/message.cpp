@@ -4,8 +4,6 @@
 
 #include <system_error>
 
-#include "kerf/base/nearest_word.h"
-
 namespace kerf {
 
 std::string printable(std::string_view text) {
@@ -23,17 +21,6 @@ std::string printable(std::string_view text) {
 }
 
 std::string quoted(std::string_view text) { return fmt::format("'{}'", printable(text)); }
-
-std::string suggestion(std::string_view word, std::span<const std::string_view> menu) {
-  const std::string_view nearest = nearest_word(word, menu);
-  if (!nearest.empty()) return fmt::format("; did you mean {}?", quoted(nearest));
-  std::string sentence = "; expected ";
-  for (size_t i = 0; i < menu.size(); ++i) {
-    if (i > 0) sentence += i + 1 < menu.size() ? ", " : " or ";
-    sentence += menu[i];
-  }
-  return sentence;
-}
 
 std::string system_message(int error_number) { return std::generic_category().message(error_number); }
 

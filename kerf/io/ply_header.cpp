@@ -8,6 +8,7 @@
 #include <set>
 
 #include "kerf/base/error.h"
+#include "kerf/base/nearest_word.h"
 #include "kerf/io/message.h"
 
 namespace kerf {

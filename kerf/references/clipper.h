@@ -36,4 +36,7 @@ inline Clipper geometry_clipper(const std::span<const Geometry>& geometries) {
           &geometries};
 }
 
+/// A temporary span would be gone when the clipper works.
+Clipper geometry_clipper(std::span<const Geometry>&&) = delete;
+
 }  // namespace kerf

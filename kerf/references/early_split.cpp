@@ -14,6 +14,7 @@ namespace kerf {
 namespace {
 
 constexpr size_t kGrain = 1024;
+constexpr size_t kTellEvery = 256;
 
 Reference with_box(Reference reference, const Box3f& box) {
   reference.lower = box.lower;
@@ -55,14 +56,16 @@ std::optional<std::vector<Reference>> split_all(std::span<const Reference> whole
   parallel_for(whole.size(), kGrain, [&](size_t begin, size_t end) {
     std::vector<Reference>& out = blocks[begin / kGrain];
     std::vector<Reference> stack;
+    size_t told = 0;  // pieces of `out` that `total` knows of
     for (size_t i = begin; i < end && total.load(std::memory_order_relaxed) <= most; ++i) {
-      const size_t before = out.size();
       split_primitive(whole[i], clipper, sa_max, stack, [&](const Reference& piece) {
         out.push_back(piece);
-        return out.size() <= most;
+        // Told to the others now and then, or each thread might make as many as all together may.
+        if (out.size() - told >= kTellEvery) total += out.size() - std::exchange(told, out.size());
+        return total.load(std::memory_order_relaxed) <= most;
       });
-      total += out.size() - before;
     }
+    total += out.size() - told;
   });
   if (total > most) return std::nullopt;
   std::vector<Reference> all;

@@ -28,7 +28,7 @@ std::string describe(const Geometry& geometry, uint32_t primitive) {
     case Defect::bad_coordinate:
       return "a coordinate that is not finite or beyond 1.3e36";
     case Defect::bad_radius:
-      return "a radius that is negative or not finite";
+      return "a radius that is negative, not finite or beyond 1.3e36";
     case Defect::none:
       break;
   }
@@ -61,13 +61,35 @@ Block fill(const Geometry& geometry, uint32_t number, size_t begin, size_t end, 
           " such primitives in all (skip_invalid drops them)");
 }
 
+void check_memory(const Geometry& geometry, size_t number) {
+  const auto check = [number](const auto& values, const char* what) {
+    if (values.data() == nullptr && values.size() > 0) {
+      throw Error(ErrorCode::invalid_argument, "geometry " + std::to_string(number),
+                  std::string("the pointer to its ") + what + " is null");
+    }
+  };
+  if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) {
+    check(mesh->vertices, "vertices");
+    check(mesh->triangles, "triangles");
+  } else if (const auto* spheres = std::get_if<Strided<Sphere>>(&geometry.shapes)) {
+    check(*spheres, "spheres");
+  } else {
+    check(std::get<Strided<Parallelogram>>(geometry.shapes), "parallelograms");
+  }
+}
+
 }  // namespace
 
 PrimitiveReferences make_references(std::span<const Geometry> geometries, bool skip_invalid) {
   size_t total = 0;
-  for (const Geometry& geometry : geometries) total += primitive_count(geometry);
-  if (total > kMaxReferences || geometries.size() > kMaxReferences) {
-    throw Error(ErrorCode::too_large, "scene", std::to_string(total) + " primitives; at most 2147483647 are possible");
+  for (size_t number = 0; number < geometries.size(); ++number) {
+    check_memory(geometries[number], number);
+    const size_t count = primitive_count(geometries[number]);
+    if (count > kMaxReferences - total || number > kMaxReferences) {
+      throw Error(ErrorCode::too_large, "geometry " + std::to_string(number),
+                  std::to_string(count) + " primitives more; a scene can hold 2147483647");
+    }
+    total += count;
   }
   PrimitiveReferences result;
   result.references.resize(total);

@@ -32,7 +32,8 @@ struct PrimitiveReferences {
 };
 
 /// One reference for each primitive with an area, in order. Throws Error(invalid_geometry) that names the first invalid
-/// primitive and how many there are, unless `skip_invalid`; Error(too_large) above kMaxReferences. Parallel.
+/// primitive and how many there are, unless `skip_invalid`; Error(too_large) above
+/// kMaxReferences; Error(invalid_argument) for a null pointer. Parallel.
 PrimitiveReferences make_references(std::span<const Geometry> geometries, bool skip_invalid = false);
 
 }  // namespace kerf

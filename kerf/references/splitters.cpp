@@ -7,11 +7,13 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+constexpr double kMostPerPrimitive = 1000;
+
 constexpr OptionSpec kEarlySplitOptions[] = {
     {"sa_max", "surface area above which a box is cut, all six faces, squared scene units", kInfinity, 0, kInfinity,
      false, true},
-    {"cap", "references per primitive, on average, that are never passed", 16, 1},
-    {"budget", "instead of sa_max: as finely as this many references per primitive allow", 1.5, 1},
+    {"cap", "references per primitive, on average, that are never passed", 16, 1, kMostPerPrimitive},
+    {"budget", "instead of sa_max: as finely as this many references per primitive allow", 1.5, 1, kMostPerPrimitive},
 };
 
 EarlySplitResult split_early(std::span<const Reference> whole, const Clipper& clipper, const OptionValues& values) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr ViewEntry kViews[] = {
     {View::depth, "depth", "distance along the ray; infinite where nothing is hit", 1},
-    {View::primitive, "primitive", "the number of the primitive hit; -1 for none", 1},
+    {View::primitive, "primitive", "the number of the primitive hit, exact up to 16777216; -1 for none", 1},
     {View::normal, "normal", "the unit normal of the primitive hit", 3},
     {View::uv, "uv", "the coordinates on the primitive hit", 3},
     {View::nodes, "nodes", "nodes that the ray visited", 1},

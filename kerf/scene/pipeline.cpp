@@ -106,12 +106,7 @@ class Parser {
   static std::string unknown(std::string_view name) {
     std::vector<std::string_view> names;
     for (const MenuEntry& entry : menu()) names.push_back(entry.name);
-    std::string sentence = "unknown name '" + std::string(name) + "'";
-    const std::string_view near = nearest_word(name, names);
-    if (!near.empty()) return sentence + "; did you mean '" + std::string(near) + "'?";
-    sentence += "; there are ";
-    for (size_t i = 0; i < names.size(); ++i) sentence += (i > 0 ? ", " : "") + std::string(names[i]);
-    return sentence;
+    return "unknown name '" + std::string(name) + "'" + suggestion(name, names);
   }
 
   void check_order(const Pipeline& pipeline) const {
@@ -122,6 +117,8 @@ class Parser {
       if (i < last && entry.kind != "splitter") fail_at(starts_[i + 1], "nothing can follow " + name + " yet");
       if (i == last && entry.kind == "splitter")
         fail_at(starts_[i], "a builder must follow " + name + ", as in " + name + "+binned_sah");
+      // Its cap counts references for each primitive, and to a second one pieces would pass for primitives.
+      if (i > 0 && entry.kind == "splitter") fail_at(starts_[i], "references can be split once only");
       if (i > 0 && entry.kind == "structure")
         fail_at(starts_[i], name + " tests whole primitives: no splitter can stand before it");
     }

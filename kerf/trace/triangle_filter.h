@@ -18,7 +18,6 @@ class TriangleColumns {
   /// After the last add(): pads with triangles that no ray hits.
   void finish();
 
-  size_t size() const { return size_; }
   const float* column(size_t corner, size_t axis) const { return columns_[corner * 3 + axis].data(); }
   size_t bytes() const { return 9 * columns_[0].size() * sizeof(float); }
 

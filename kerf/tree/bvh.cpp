@@ -98,6 +98,7 @@ std::string find_node_fault(const Bvh& bvh, uint32_t number, uint32_t largest_le
     return {};
   }
   if (node.first <= number || node.first + size_t{1} >= bvh.nodes.size()) return "has children out of range";
+  if (node.first % 2 == 0) return "has children that are no pair";
   const Box3f children = united(bvh.nodes[node.first].bounds(), bvh.nodes[node.first + 1].bounds());
   if (children != node.bounds()) return "is not the union of its children";
   return {};

@@ -41,7 +41,8 @@ struct BvhNode {
 static_assert(sizeof(BvhNode) == 32);
 
 /// A binary bounding volume hierarchy as plain data: what every builder makes and every layout is made from.
-/// Node 0 is the root; no nodes: there is nothing to hit. Children come after their parent. Owns no geometry.
+/// Node 0 is the root; no nodes: there is nothing to hit. Children come after their parent, in pairs (1, 2), (3, 4),
+/// ... Owns no geometry.
 struct Bvh {
   std::vector<BvhNode> nodes;
   std::vector<LeafSlot> slots;

@@ -125,6 +125,8 @@ def test_json_says_what_was_done():
 def test_list_names_every_entry():
     menu = json.loads(kerf("list", "--json", "-").stdout)
     names = [entry["name"] for entry in menu]
+    assert {entry["kind"] for entry in menu} == {"splitter", "builder", "structure", "view"}
+    assert kerf("list", "--quiet", "--threads", "2").returncode == 0
     for name in ["early_split", "spatial_median", "object_median", "sweep_sah", "binned_sah", "brute_force"]:
         assert name in names
     text = kerf("list").stdout
@@ -154,6 +156,8 @@ USAGE = [
     (["render", "square.ply", "--eye", "1,2"], "--eye"),
     (["render", "square.ply", "--eye", "1,2,x"], "--eye"),
     (["render", "square.ply", "--fov", "180"], "--fov"),
+    (["render", "square.ply", "--eye", "1,1,1", "--look-at", "1,1,1"], "eye and look-at"),
+    (["render", "square.ply", "--up", "0,0,0"], "camera"),
     (["render", "square.ply", "--threads", "-1"], "--threads"),
 ]
 
@@ -207,6 +211,19 @@ def test_skip_invalid_drops_and_says_so():
 def test_output_that_cannot_be_written_ends_with_1(output):
     result = kerf("render", "square.ply", "-o", output)
     assert result.returncode == 1 and output in result.stderr
+
+
+def test_output_is_judged_before_any_work():
+    slow = ["--size", "20000x20000", "--structure", "brute_force"]  # hours, if it were begun
+    for output in ["out.gif", "nowhere/out.png"]:
+        assert kerf("render", "square.ply", "-o", output, *slow).returncode == 1
+    assert kerf("render", "missing.ply", "--structure", "binned_shah").returncode == 2
+
+
+def test_standard_output_that_is_full_ends_with_1():
+    with open("/dev/full", "w") as full:
+        for command in [["list"], ["list", "--json", "-"], ["render", "square.ply", "--quiet", "--json", "-"]]:
+            assert subprocess.run([KERF, *command], stdout=full, stderr=subprocess.PIPE).returncode == 1, command
 
 
 def test_a_failed_write_leaves_the_former_file(folder):
