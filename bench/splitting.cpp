@@ -45,15 +45,6 @@ double quantile(std::vector<double> values, double share) {
   return values[static_cast<size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
 }
 
-std::vector<Ray> camera_rays(const Camera& camera, const Arguments& arguments) {
-  const CameraRays pixel(camera, arguments.width, arguments.height);
-  std::vector<Ray> rays;
-  for (uint32_t y = 0; y < arguments.height; ++y) {
-    for (uint32_t x = 0; x < arguments.width; ++x) rays.push_back(pixel(x, y));
-  }
-  return rays;
-}
-
 std::vector<Row> build_rows(const Mesh& mesh, const Arguments& arguments) {
   std::vector<Row> rows;
   rows.push_back({arguments.builder, {}, {}, {}});
@@ -118,7 +109,7 @@ int run(const Arguments& arguments) {
     for (const std::string& turn_name : arguments.turns) {
       const Transform turn = turn_by_name(turn_name);
       const Mesh mesh = turned(read_ply(*folder + "/" + entry.scene + ".ply"), turn);
-      const std::vector<Ray> rays = camera_rays(turned(entry.camera, turn), arguments);
+      const std::vector<Ray> rays = camera_rays(turned(entry.camera, turn), arguments.width, arguments.height);
       std::vector<Row> rows = build_rows(mesh, arguments);
       trace_rows(rows, rays, arguments.repeats);
       for (const Row& row : rows) json.push_back(print_row(entry.scene, turn_name, row, rows[0], rays.size()));

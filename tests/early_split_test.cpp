@@ -14,6 +14,7 @@
 #include "kerf/geometry/clip.h"
 #include "kerf/references/split_references.h"
 #include "kerf/references/splitters.h"
+#include "tests/support/error_of.h"
 #include "tests/support/exact.h"
 #include "tests/support/property.h"
 #include "tests/support/random.h"
@@ -68,18 +69,6 @@ bool can_be_cut(const Box3f& box) {
 
 bool same_bytes(const std::vector<Reference>& a, const std::vector<Reference>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Reference)) == 0;
-}
-
-template <class F>
-std::string error_of(ErrorCode code, F&& f) {
-  try {
-    f();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), code) << error.what();
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return {};
 }
 
 TEST(EarlySplit, InfiniteSaMaxGivesThePlainList) {

@@ -14,6 +14,7 @@
 #include "kerf/geometry/prepared_ray.h"
 #include "kerf/scene/menu.h"
 #include "kerf/scene/scene.h"
+#include "tests/support/error_of.h"
 #include "tests/support/property.h"
 #include "tests/support/random.h"
 
@@ -116,18 +117,6 @@ size_t check_all(const std::vector<Geometry>& geometries, const std::vector<Ray>
   const Outcome outcome = compare_all(geometries, rays, skip_invalid);
   EXPECT_EQ(outcome.difference, "");
   return outcome.hits;
-}
-
-template <class F>
-std::string error_of(ErrorCode code, F&& f) {
-  try {
-    f();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), code) << error.what();
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return {};
 }
 
 const Triangle kTriangle = {{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};

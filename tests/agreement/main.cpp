@@ -70,15 +70,6 @@ std::vector<std::string> default_structures() {
   return all;
 }
 
-std::vector<Ray> camera_rays(const Camera& camera, uint32_t width, uint32_t height) {
-  const CameraRays pixel(camera, width, height);
-  std::vector<Ray> rays;
-  for (uint32_t y = 0; y < height; ++y) {
-    for (uint32_t x = 0; x < width; ++x) rays.push_back(pixel(x, y));
-  }
-  return rays;
-}
-
 /// What the oracles say about the rays of all cameras of a scene.
 struct Expected {
   std::vector<Ray> rays;

@@ -43,6 +43,15 @@ Transform turn_by_name(const std::string& name) {
   throw Error(ErrorCode::invalid_option, "turn", "'" + name + "' is none of straight, x, y, z and xyz");
 }
 
+std::vector<Ray> camera_rays(const Camera& camera, uint32_t width, uint32_t height) {
+  const CameraRays pixel(camera, width, height);
+  std::vector<Ray> rays;
+  for (uint32_t y = 0; y < height; ++y) {
+    for (uint32_t x = 0; x < width; ++x) rays.push_back(pixel(x, y));
+  }
+  return rays;
+}
+
 Mesh turned(Mesh mesh, const Transform& turn) {
   for (Vec3f& vertex : mesh.vertices) vertex = to_float(turn.point(to_double(vertex)));
   return mesh;

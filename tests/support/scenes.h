@@ -27,6 +27,9 @@ std::vector<SceneCamera> read_cameras(const std::string& folder);
 /// Throws Error(invalid_option) for another name.
 Transform turn_by_name(const std::string& name);
 
+/// One ray through the centre of each pixel, row by row from the top.
+std::vector<Ray> camera_rays(const Camera& camera, uint32_t width, uint32_t height);
+
 Mesh turned(Mesh mesh, const Transform& turn);
 Camera turned(const Camera& camera, const Transform& turn);
 
