@@ -233,14 +233,23 @@ def test_a_failed_write_leaves_the_former_file(folder):
 
 
 def test_an_interrupt_writes_what_is_there_and_ends_with_130(folder):
-    rows = 3000
-    process = subprocess.Popen([KERF, "render", "square.ply", "-o", "out.pfm", "--view", "depth", "--size",
-                                f"4000x{rows}", "--structure", "brute_force", "--threads", "1"], stderr=subprocess.PIPE)
-    time.sleep(0.5)
+    # Enough triangles that brute force takes far longer than the wait, and the handler is surely there after it.
+    count, rows = 20000, 1500
+    vertices = "".join(f"{i % 100} {i // 100} {c}\n{i % 100 + 1} {i // 100} {c}\n{i % 100} {i // 100 + 1} {c}\n"
+                       for i, c in ((i, i % 7) for i in range(count)))
+    faces = "".join(f"3 {3 * i} {3 * i + 1} {3 * i + 2}\n" for i in range(count))
+    header = SQUARE[:SQUARE.index("end_header")].replace("vertex 4", f"vertex {3 * count}")
+    broken("many.ply", header.replace("face 1", f"face {count}") + "end_header\n" + vertices + faces)
+    process = subprocess.Popen([KERF, "render", "many.ply", "-o", "out.pfm", "--view", "depth", "--size",
+                                f"2000x{rows}", "--structure", "brute_force", "--threads", "1", "--eye", "50,100,40",
+                                "--look-at", "50,100,0"], stderr=subprocess.PIPE)
+    time.sleep(1.5)
     process.send_signal(signal.SIGINT)
     assert process.wait(timeout=60) == 130
     assert "interrupted" in process.stderr.read().decode()
-    assert len(read_pfm("out.pfm")) == rows
+    pixels = [value for row in read_pfm("out.pfm") for value in row]
+    assert len(pixels) == 2000 * rows
+    assert any(value != float("inf") for value in pixels), "what was reached is there"
 
 
 if __name__ == "__main__":
