@@ -28,8 +28,7 @@ class SweepSah {
   const Reference& reference(uint32_t i) const { return references_[lines_[0].order[i]]; }
 
   /// The plane between two different centres with the least area times count, both sides added. References with equal
-  /// centres stay together: a cut among them is no plane, and taking one was measured to cost quality on aligned
-  /// scenes.
+  /// centres stay together: a cut among them is no plane, and would depend on the order of the primitives.
   std::optional<Halves> split(const Subset& subset) {
     std::array<Cut, 3> cuts;
     for_each_axis(subset, [&](uint32_t axis) { cuts[axis] = cheapest_cut(subset, axis); });

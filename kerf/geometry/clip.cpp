@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "kerf/base/rounding.h"
-
 namespace kerf {
 namespace {
 
@@ -62,11 +60,6 @@ void keep_side(const Polygon& from, Polygon& to, uint32_t axis, double position,
       to.push(cut_edge(p, q, axis, position, rounding));
     }
   }
-}
-
-Box3f outward(Vec3d lower, Vec3d upper) {
-  return {{round_down(lower.x), round_down(lower.y), round_down(lower.z)},
-          {round_up(upper.x), round_up(upper.y), round_up(upper.z)}};
 }
 
 }  // namespace

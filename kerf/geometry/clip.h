@@ -3,9 +3,16 @@
 #include <span>
 
 #include "kerf/base/box3.h"
+#include "kerf/base/rounding.h"
 #include "kerf/geometry/shapes.h"
 
 namespace kerf {
+
+/// The smallest float box that holds a box in double.
+constexpr Box3f outward(Vec3d lower, Vec3d upper) {
+  return {{round_down(lower.x), round_down(lower.y), round_down(lower.z)},
+          {round_up(upper.x), round_up(upper.y), round_up(upper.z)}};
+}
 
 /// The tight box of the part of a convex polygon (three or four corners) that lies in `cell`, rounded outward and
 /// within the cell; empty if they do not touch. Always cut from the polygon given, so that errors do not add up.

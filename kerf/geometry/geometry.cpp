@@ -15,20 +15,14 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;  // clang 14 does not find it by itself
 
-Box3f outward_bounds(std::span<const Vec3d> points) {
-  Box3f box;
-  for (const Vec3d& p : points) {
-    box.extend(Vec3f{round_down(p.x), round_down(p.y), round_down(p.z)});
-    box.extend(Vec3f{round_up(p.x), round_up(p.y), round_up(p.z)});
-  }
-  return box;
-}
-
 Box3f bounds_of(const Triangle& t) { return {min(min(t.a, t.b), t.c), max(max(t.a, t.b), t.c)}; }
-Box3f bounds_of(const Parallelogram& p) { return outward_bounds(p.corners()); }
+Box3f bounds_of(const Parallelogram& p) {
+  const std::array<Vec3d, 4> c = p.corners();
+  return outward(min(min(c[0], c[1]), min(c[2], c[3])), max(max(c[0], c[1]), max(c[2], c[3])));
+}
 Box3f bounds_of(const Sphere& s) {
   const Vec3d center = to_double(cleaned(s.center)), reach{s.radius, s.radius, s.radius};
-  return outward_bounds(std::array{center - reach, center + reach});
+  return outward(center - reach, center + reach);
 }
 
 Box3f clip_to(const Triangle& t, const Box3f& cell) {

@@ -26,7 +26,7 @@ FAULTS = [
     Fault("near and far sides not swapped for negative directions", "kerf/trace/ray_box.h",
           "near_side[axis] = (negative ? kUpper : kLower) + axis;", "near_side[axis] = kLower + axis;",
           "trace_test nasty_test"),
-    Fault("no outward rounding of clipped boxes", "kerf/geometry/clip.cpp",
+    Fault("no outward rounding of clipped boxes", "kerf/geometry/clip.h",
           "return {{round_down(lower.x), round_down(lower.y), round_down(lower.z)},",
           "return {to_float(lower), to_float(upper)};\n  return {{round_down(lower.x), round_down(lower.y), round_down(lower.z)},",
           "clip_test early_split_test"),
