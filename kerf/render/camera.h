@@ -3,16 +3,9 @@
 #include "kerf/base/box3.h"
 #include "kerf/geometry/ray.h"
 #include "kerf/geometry/shapes.h"
+#include "kerf/io/camera.h"
 
 namespace kerf {
-
-/// A pinhole camera. `fov` is the vertical field of view in degrees.
-struct Camera {
-  Vec3d eye{0, 0, 0};
-  Vec3d look_at{0, 0, -1};
-  Vec3d up{0, 1, 0};
-  double fov = 45;
-};
 
 /// A camera that sees all of a box, from the front, the right and above; of a unit cube if the box is empty.
 Camera framing_camera(const Box3f& bounds, double aspect, Vec3d up = {0, 1, 0}, double fov = 45);

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "kerf/io/model.h"
+
+namespace kerf {
+
+/// Reads any format that Assimp knows, its nodes placed by their transforms, with colours, base colour textures,
+/// emission and smooth normals. Throws Error (file) with the path as place.
+Model read_with_assimp(const std::string& path);
+
+/// The ends of names that Assimp reads, such as ".fbx", in order.
+std::vector<std::string> assimp_extensions();
+
+}  // namespace kerf

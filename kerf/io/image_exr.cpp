@@ -1,0 +1,2 @@
+#include "kerf/base/error.h"
+#include "kerf/io/image_write.h"
