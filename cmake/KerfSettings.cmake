@@ -61,7 +61,8 @@ add_library(kerf_flags INTERFACE)
 # Fused multiply-adds would make two neighbours disagree about their shared edge.
 target_compile_options(kerf_flags INTERFACE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
   -Wno-missing-field-initializers
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # g++ 12 warns falsely about std::string
+  # g++ 12 warns falsely about std::string and about a std::variant of vectors.
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict$<SEMICOLON>-Wno-maybe-uninitialized>)
 if(KERF_WERROR)
   target_compile_options(kerf_flags INTERFACE -Werror)
 endif()

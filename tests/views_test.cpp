@@ -17,7 +17,7 @@ namespace {
 
 TEST(Camera, RaysAreOfUnitLengthThroughPixelCentres) {
   const CameraRays rays({.eye = {0, 0, 2}, .look_at = {0, 0, 0}, .up = {0, 1, 0}, .fov = 90}, 4, 2);
-  const Ray ray = rays(0, 0);  // half of the height is 1 at distance 1, of the width 2
+  const Ray ray = rays.center(0, 0);  // half of the height is 1 at distance 1, of the width 2
   EXPECT_NEAR(ray.direction.x / -ray.direction.z, -1.5, 1e-6);
   EXPECT_NEAR(ray.direction.y / -ray.direction.z, 0.5, 1e-6);
   EXPECT_NEAR(dot(ray.direction, ray.direction), 1, 1e-6);

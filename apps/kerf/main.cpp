@@ -63,9 +63,10 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", fmt::format("kerf {} (tasks: {}, SIMD: {})", kVersion, task_backend(),
                                                 triangle_kernels().instruction_set));
   app.allow_extras();  // to name the nearest word, which CLI11 does not
-  app.footer("Example: kerf render bunny.ply -o bunny.png --view normal");
+  app.footer("Example: kerf render room.yaml -o room.png --spp 256");
   std::function<int()> command;
   add_render(app, command);
+  add_check(app, command);
   add_list(app, command);
   app.require_subcommand(0, 1);
   try {

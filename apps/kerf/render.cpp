@@ -1,19 +1,20 @@
-// kerf render: a picture of what each pixel's ray hits.
+// kerf render: a picture of a scene, path-traced or of what each pixel's ray hits.
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <array>
 #include <chrono>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "apps/kerf/command.h"
+#include "apps/kerf/progress_bar.h"
+#include "apps/kerf/scene_input.h"
 #include "kerf/base/error.h"
 #include "kerf/base/nearest_word.h"
 #include "kerf/io/image_write.h"
-#include "kerf/io/ply.h"
+#include "kerf/render/compare.h"
+#include "kerf/render/path_tracer.h"
 #include "kerf/render/views.h"
 #include "kerf/scene/pipeline.h"
 
@@ -22,19 +23,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr std::string_view kBeauty = "beauty";
+
 /// What the options were set to.
-struct Arguments {
-  std::string input, output, view = "normal", structure = BuildOptions{}.structure, size = "960x640", json;
-  std::vector<double> eye, look_at, up;
-  double fov = 45;
-  int threads = 0;
-  bool skip_invalid = false, quiet = false;
+struct Arguments : SceneArguments {
+  std::string output, view = std::string(kBeauty), size = "960x640", compare;
+  uint32_t samples = 32, seed = 0;
 };
 
-const ViewEntry& find_view(const std::string& name) {
-  std::vector<std::string_view> names;
+/// What is drawn: a debug view, or none for the path-traced picture.
+const ViewEntry* find_view(const std::string& name) {
+  if (name == kBeauty) return nullptr;
+  std::vector<std::string_view> names = {kBeauty};
   for (const ViewEntry& entry : views()) {
-    if (entry.name == name) return entry;
+    if (entry.name == name) return &entry;
     names.push_back(entry.name);
   }
   throw Error(ErrorCode::invalid_option, "--view", fmt::format("unknown view '{}'{}", name, suggestion(name, names)));
@@ -53,163 +55,144 @@ std::array<uint32_t, 2> parse_size(const std::string& text) {
   return size;
 }
 
-Vec3d vector_of(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
-
-Camera make_camera(const Arguments& arguments, const Box3f& bounds, double aspect) {
-  const Vec3d up = arguments.up.empty() ? Vec3d{0, 1, 0} : vector_of(arguments.up);
-  if (!(arguments.fov > 0 && arguments.fov < 180)) {
-    throw Error(ErrorCode::invalid_option, "--fov", "it must lie between 0 and 180 degrees");
+/// Finds mistakes in the words before any work is done: the output's format and folder.
+void check_output(const std::string& output) {
+  image_format(output);
+  const std::filesystem::path folder = std::filesystem::path(output).parent_path();
+  if (!folder.empty() && !std::filesystem::is_directory(folder)) {
+    throw Error(ErrorCode::file, output, "there is no folder " + folder.string());
   }
-  Camera camera = framing_camera(bounds, aspect, up, arguments.fov);
-  if (!arguments.look_at.empty()) camera.look_at = vector_of(arguments.look_at);
-  if (!arguments.eye.empty()) camera.eye = vector_of(arguments.eye);
-  return camera;
+  if (access(folder.empty() ? "." : folder.c_str(), W_OK) != 0 && access(output.c_str(), W_OK) != 0) {
+    throw Error(ErrorCode::file, output, "the folder cannot be written to");
+  }
 }
 
-/// A bar with the time left on a terminal, nothing elsewhere; also where an interrupt is noticed.
-class ProgressBar {
- public:
-  explicit ProgressBar(bool quiet) : shown_(!quiet && isatty(STDERR_FILENO) != 0) {}
-  ~ProgressBar() {
-    if (drawn_) fmt::print(stderr, "\r{:60}\r", "");
-  }
-
-  bool operator()(double done) {
-    const auto now = std::chrono::steady_clock::now();
-    if (shown_ && now - last_ > std::chrono::milliseconds(100)) {
-      const double spent = std::chrono::duration<double>(now - start_).count();
-      const int full = static_cast<int>(done * 30);
-      fmt::print(stderr, "\r[{:=<{}}{:{}}] {:3.0f} %, {:.1f} s left ", "", full, "", 30 - full, done * 100,
-                 done > 0 ? spent / done - spent : 0);
-      std::fflush(stderr);
-      last_ = now;
-      drawn_ = true;
-    }
-    return !interrupted();
-  }
-
- private:
-  bool shown_, drawn_ = false;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(), last_ = start_;
+/// A finished or interrupted picture.
+struct Picture {
+  Image image;  ///< as it is to be written
+  bool complete = true;
+  double seconds = 0;
+  Json figures;
 };
 
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json("inf"); }
-
-Json report_json(const BuildReport& r) {
-  return {{"structure", r.structure},
-          {"primitives", r.primitives},
-          {"invalid", r.invalid},
-          {"degenerate", r.degenerate},
-          {"references", r.references},
-          {"references_per_primitive", r.references_per_primitive},
-          {"sa_max", number(r.sa_max)},
-          {"capped", r.capped},
-          {"bytes", r.bytes},
-          {"nodes", r.nodes},
-          {"leaves", r.leaves},
-          {"depth", r.depth},
-          {"sah_cost", r.sah_cost},
-          {"tree_hash", fmt::format("{:016x}", r.tree_hash)},
-          {"seconds",
-           {{"references", r.seconds.references},
-            {"split", r.seconds.split},
-            {"build", r.seconds.build},
-            {"layout", r.seconds.layout},
-            {"total", r.seconds.total}}}};
+Picture render_beauty(const RenderScene& scene, const Camera& camera, const Arguments& a, uint32_t width,
+                      uint32_t height) {
+  ProgressBar bar(a.quiet);
+  PathTracerResult result = render_paths(scene, camera, {width, height, a.samples, a.seed, a.threads, std::ref(bar)});
+  if (result.invalid > 0 && !a.quiet) {
+    fmt::print(stderr, "kerf: note: {} of {} paths gave no finite radiance and were left out\n", result.invalid,
+               result.paths);
+  }
+  Picture picture;
+  picture.figures = {{"samples", a.samples},
+                     {"seed", a.seed},
+                     {"paths", result.paths},
+                     {"rays", result.rays},
+                     {"invalid_paths", result.invalid}};
+  const bool as_values = image_format(a.output) != ImageFormat::png;
+  picture.image = as_values ? std::move(result.radiance) : srgb_picture(result.radiance);
+  picture.complete = result.complete;
+  picture.seconds = result.seconds;
+  return picture;
 }
 
-Json result_json(const Arguments& arguments, const BuildReport& report, const ViewResult& result) {
+Picture render_debug_view(const Scene& scene, const Camera& camera, const Arguments& a, const ViewEntry& view,
+                          uint32_t width, uint32_t height) {
+  ProgressBar bar(a.quiet);
+  ViewResult result = render_view(scene, camera, {view.view, width, height, a.threads, std::ref(bar)});
   const double rays = result.rays > 0 ? static_cast<double>(result.rays) : 1;
-  return {{"input", arguments.input},
-          {"output", arguments.output},
-          {"view", arguments.view},
-          {"width", result.values.width},
-          {"height", result.values.height},
-          {"complete", result.complete},
-          {"rays", result.rays},
-          {"hits", result.hits},
-          {"nodes_per_ray", static_cast<double>(result.counts.nodes) / rays},
-          {"triangles_per_ray", static_cast<double>(result.counts.primitives) / rays},
-          {"boxes_per_ray", static_cast<double>(result.counts.boxes) / rays},
-          {"render_seconds", result.seconds},
-          {"scene", report_json(report)}};
+  Picture picture;
+  picture.figures = {{"rays", result.rays},
+                     {"hits", result.hits},
+                     {"nodes_per_ray", static_cast<double>(result.counts.nodes) / rays},
+                     {"triangles_per_ray", static_cast<double>(result.counts.primitives) / rays},
+                     {"boxes_per_ray", static_cast<double>(result.counts.boxes) / rays}};
+  const bool as_values = image_format(a.output) != ImageFormat::png;
+  picture.image = as_values ? std::move(result.values) : displayed(view.view, result.values);
+  picture.complete = result.complete;
+  picture.seconds = result.seconds;
+  return picture;
 }
 
-/// Finds mistakes in the words before any work is done: the structure, the output's format and folder.
-void check_words(const Arguments& arguments) {
-  parse_pipeline(arguments.structure);
-  image_format(arguments.output);
-  const std::filesystem::path folder = std::filesystem::path(arguments.output).parent_path();
-  if (!folder.empty() && !std::filesystem::is_directory(folder)) {
-    throw Error(ErrorCode::file, arguments.output, "there is no folder " + folder.string());
+/// Says what the scene's structure is worth beside another one.
+Json compare(const SceneInput& input, const Arguments& a, double aspect) {
+  BuildOptions other = input.build;
+  other.structure = a.compare;
+  const BuildOptions both[] = {other, input.build};
+  const std::vector<StructureCost> costs = compare_structures(input.description, input.camera, aspect, both);
+  Json all = Json::array();
+  for (const StructureCost& cost : costs) {
+    const double nanoseconds = 1e9 * cost.seconds / static_cast<double>(cost.rays);
+    if (!a.quiet) {
+      fmt::print(stderr, "{}{}: {:.1f} nodes and {:.1f} triangles a ray, {:.0f} ns", &cost == &costs[0] ? "" : "; ",
+                 cost.structure, cost.nodes_per_ray, cost.primitives_per_ray, nanoseconds);
+    }
+    all.push_back({{"structure", cost.structure},
+                   {"references_per_primitive", cost.references_per_primitive},
+                   {"rays", cost.rays},
+                   {"nodes_per_ray", cost.nodes_per_ray},
+                   {"triangles_per_ray", cost.primitives_per_ray},
+                   {"nanoseconds_per_ray", nanoseconds}});
   }
+  if (!a.quiet) fmt::print(stderr, ": {:.2f} times as fast\n", costs[0].seconds / costs[1].seconds);
+  return all;
 }
 
-int render(Arguments arguments) {
-  if (arguments.output.empty()) {
-    arguments.output = std::filesystem::path(arguments.input).filename().replace_extension(".png").string();
+int render(Arguments a) {
+  if (a.output.empty()) a.output = std::filesystem::path(a.input).filename().replace_extension(".png").string();
+  const ViewEntry* view = find_view(a.view);
+  const auto [width, height] = parse_size(a.size);
+  const double aspect = static_cast<double>(width) / height;
+  if (!a.compare.empty()) parse_pipeline(a.compare);
+  check_output(a.output);
+  SceneInput input = read_input(a, aspect);
+  const Json comparison = a.compare.empty() ? Json() : compare(input, a, aspect);
+  const RenderScene scene(std::move(input.description), input.build);
+  const BuildReport& report = scene.scene().report();
+  if (!a.quiet) print_build_notes(report);
+  watch_interrupts();
+  const Picture picture = view != nullptr ? render_debug_view(scene.scene(), input.camera, a, *view, width, height)
+                                          : render_beauty(scene, input.camera, a, width, height);
+  write_image(a.output, picture.image);
+  if (!a.json.empty()) {
+    Json all = {{"input", a.input}, {"output", a.output}, {"view", a.view},
+                {"width", width},   {"height", height},   {"complete", picture.complete}};
+    all.update(picture.figures);
+    all["render_seconds"] = picture.seconds;
+    if (!comparison.is_null()) all["comparison"] = comparison;
+    all["scene"] = report_json(report);
+    write_json(a.json, all.dump(2));
   }
-  const ViewEntry& view = find_view(arguments.view);
-  const auto [width, height] = parse_size(arguments.size);
-  check_words(arguments);
-  const Mesh mesh = read_ply(arguments.input);
-  if (mesh.triangles.empty())
-    throw Error(ErrorCode::file, arguments.input, "there is no face in it, so nothing to see");
-  Scene scene;
-  scene.add(TriangleMesh{std::span(mesh.vertices), std::span(mesh.triangles)});
-  const BuildReport& report = scene.build({arguments.structure, arguments.threads, arguments.skip_invalid});
-  if (report.capped && !arguments.quiet) {
-    fmt::print(stderr, "kerf: note: the cap on references raised sa_max to {:.6g}\n", report.sa_max);
-  }
-  if (report.invalid > 0 && !arguments.quiet) {
-    fmt::print(stderr, "kerf: note: {} invalid triangles were dropped\n", report.invalid);
-  }
-  const Camera camera = make_camera(arguments, scene.bounds(), static_cast<double>(width) / height);
-  ViewResult result;
-  {
-    ProgressBar bar(arguments.quiet);
-    watch_interrupts();
-    result = render_view(scene, camera, {view.view, width, height, arguments.threads, std::ref(bar)});
-  }
-  const bool as_values = image_format(arguments.output) == ImageFormat::pfm;
-  write_image(arguments.output, as_values ? result.values : displayed(view.view, result.values));
-  if (!arguments.json.empty()) write_json(arguments.json, result_json(arguments, report, result).dump(2));
-  if (!arguments.quiet) {
-    fmt::print(stderr, "{} {} in {:.2f} s, built in {:.2f} s\n", arguments.output,
-               result.complete ? "written" : "interrupted, written as far as it was", result.seconds,
+  if (!a.quiet) {
+    fmt::print(stderr, "{} {} in {:.2f} s, built in {:.2f} s\n", a.output,
+               picture.complete ? "written" : "interrupted, written as far as it was", picture.seconds,
                report.seconds.total);
   }
-  return result.complete ? kDone : kInterrupted;
+  return picture.complete ? kDone : kInterrupted;
 }
 
 }  // namespace
 
 void add_render(CLI::App& app, std::function<int()>& run) {
-  CLI::App* command = app.add_subcommand("render", "Renders a view of a PLY model, one ray per pixel.");
+  CLI::App* command = app.add_subcommand("render", "Renders a scene or a model into a picture.");
   command->footer(
-      "Example: kerf render sponza.ply -o depth.pfm --view depth --eye -12,3,0.5 --look-at 10,6,-0.5 --fov 60 \\\n"
-      "             --structure 'early_split(budget=1.5)+binned_sah'");
+      "Examples: kerf render room.yaml --spp 256\n"
+      "          kerf render machine.glb -o machine.exr --eye 3,2,4 --look-at 0,0,0\n"
+      "          kerf render sponza.ply -o depth.pfm --view depth --structure 'early_split(budget=1.5)+binned_sah'");
   auto a = std::make_shared<Arguments>();
-  command->add_option("input", a->input, "A PLY file")->required();
   command->add_option("-o,--output", a->output,
-                      "Picture to write: .png to look at, .pfm for the values themselves "
+                      "Picture to write: .png to look at, .exr or .pfm for the values themselves "
                       "(default: the input's name with .png, in this folder)");
-  command->add_option("--view", a->view, "depth, primitive, normal, uv, nodes or triangles; see kerf list")
-      ->capture_default_str();
-  command->add_option("--structure", a->structure, "How to find what rays hit; see kerf list")->capture_default_str();
   command->add_option("--size", a->size, "Width and height in pixels")->capture_default_str();
-  command->add_option("--eye", a->eye, "Camera position X,Y,Z (default: the model is framed)")
-      ->delimiter(',')
-      ->expected(3);
-  command->add_option("--look-at", a->look_at, "Point in the middle of the picture X,Y,Z")->delimiter(',')->expected(3);
-  command->add_option("--up", a->up, "Direction that is up X,Y,Z (default: 0,1,0)")->delimiter(',')->expected(3);
-  command->add_option("--fov", a->fov, "Vertical field of view in degrees")->capture_default_str();
-  command->add_option("--threads", a->threads, "Threads to use; 0: all")
-      ->check(CLI::Range(0, 4096))
+  command->add_option("--spp", a->samples, "Samples of each pixel")
+      ->check(CLI::Range(1, 1 << 24))
       ->capture_default_str();
-  command->add_flag("--skip-invalid", a->skip_invalid, "Drop triangles that are not finite, instead of an error");
-  command->add_option("--json", a->json, "Write figures to this file; '-' is standard output");
-  command->add_flag("--quiet", a->quiet, "No messages and no progress");
+  command->add_option("--seed", a->seed, "Another number gives another noise")->capture_default_str();
+  command->add_option("--view", a->view, "beauty (path-traced), or a view of what rays hit; see kerf list")
+      ->capture_default_str();
+  command->add_option("--compare", a->compare, "Also say what rays cost in this structure, such as binned_sah");
+  add_scene_options(*command, *a);
+  add_camera_options(*command, *a);
   command->callback([a, &run] { run = [a] { return render(*a); }; });
 }
 

@@ -27,9 +27,8 @@
 #pragma GCC diagnostic pop
 
 namespace kerf {
-namespace {
 
-void check(const std::string& path, const Image& image) {
+void check_image(const std::string& path, const Image& image) {
   const auto refuse = [&](const std::string& sentence) { throw Error(ErrorCode::invalid_argument, path, sentence); };
   if (image.channels != 1 && image.channels != 3) {
     refuse(fmt::format("the image has {} channels; 1 or 3 can be written", image.channels));
@@ -44,6 +43,8 @@ void check(const std::string& path, const Image& image) {
                        image.height, image.channels));
   }
 }
+
+namespace {
 
 unsigned char to_byte(float value) {
   if (!(value > 0)) return 0;  // NaN too
@@ -65,7 +66,7 @@ bool has_extension(std::string_view path, std::string_view extension) {
 }  // namespace
 
 void write_pfm(const std::string& path, const Image& image) {
-  check(path, image);
+  check_image(path, image);
   OutputFile file(path);
   file.write(fmt::format("{}\n{} {}\n-1.0\n", image.channels == 3 ? "PF" : "Pf", image.width, image.height));
   const size_t row = size_t{image.width} * image.channels;
@@ -79,7 +80,7 @@ void write_pfm(const std::string& path, const Image& image) {
 }
 
 void write_png(const std::string& path, const Image& image) {
-  check(path, image);
+  check_image(path, image);
   // stb counts bytes, and twice as many while it compresses, in an int.
   constexpr size_t kLimit = size_t{1} << 29;
   const size_t row = size_t{image.width} * image.channels;
@@ -101,14 +102,33 @@ void write_png(const std::string& path, const Image& image) {
   file.commit();
 }
 
+#ifndef KERF_HAVE_OPENEXR
+void write_exr(const std::string& path, const Image&) {
+  throw Error(ErrorCode::file, path, "this build cannot write EXR, as OpenEXR was not there; .png and .pfm can be written");
+}
+#endif
+
 void write_image(const std::string& path, const Image& image) {
-  image_format(path) == ImageFormat::png ? write_png(path, image) : write_pfm(path, image);
+  switch (image_format(path)) {
+    case ImageFormat::png:
+      return write_png(path, image);
+    case ImageFormat::pfm:
+      return write_pfm(path, image);
+    case ImageFormat::exr:
+      return write_exr(path, image);
+  }
 }
 
 ImageFormat image_format(const std::string& path) {
   if (has_extension(path, ".png")) return ImageFormat::png;
   if (has_extension(path, ".pfm")) return ImageFormat::pfm;
+#ifdef KERF_HAVE_OPENEXR
+  if (has_extension(path, ".exr")) return ImageFormat::exr;
+  throw Error(ErrorCode::file, path, "has an unknown image format; .png, .pfm and .exr can be written");
+#else
+  if (has_extension(path, ".exr")) write_exr(path, {});
   throw Error(ErrorCode::file, path, "has an unknown image format; .png and .pfm can be written");
+#endif
 }
 
 }  // namespace kerf

@@ -10,6 +10,9 @@ namespace kerf {
 // and Error (invalid_argument) for an image without pixels, with other than 1 or 3 channels, or whose count of pixels
 // does not fit its size.
 
+/// Throws the Error (invalid_argument) that is said above, with the path as place.
+void check_image(const std::string& path, const Image& image);
+
 /// Writes the floats as they are, as a little-endian portable float map.
 void write_pfm(const std::string& path, const Image& image);
 
@@ -17,12 +20,18 @@ void write_pfm(const std::string& path, const Image& image);
 /// Throws Error (invalid_argument) for an image of more than 2^29 bytes.
 void write_png(const std::string& path, const Image& image);
 
-enum class ImageFormat { png, pfm };
+/// Writes the floats as they are, NaN and infinities too, as an OpenEXR file: 32 bits a channel, R, G and B or Y alone,
+/// ZIP compressed. The same image gives the same bytes. Throws Error (file) in a build without OpenEXR.
+void write_exr(const std::string& path, const Image& image);
 
-/// The format that the end of a path names, in any case of letters. Throws Error (file) for one that cannot be written.
+enum class ImageFormat { png, pfm, exr };
+
+/// The format that the end of a path names, in any case of letters. Throws Error (file) for one that this build cannot
+/// write.
 ImageFormat image_format(const std::string& path);
 
-/// Writes in the format that the end of the path names, .png or .pfm in any case. Throws Error (file) for any other.
+/// Writes in the format that the end of the path names, .png, .pfm or .exr in any case. Throws Error (file) for any
+/// other.
 void write_image(const std::string& path, const Image& image);
 
 }  // namespace kerf

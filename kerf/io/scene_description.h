@@ -33,7 +33,8 @@ struct SceneDescription {
   std::string name, description;
   std::optional<Camera> camera;  ///< none: the objects are to be framed
   Background background;
-  std::string structure;  ///< the pipeline that the file asks for; empty: none
+  std::string structure;        ///< the pipeline that the file asks for; empty: none
+  std::string structure_place;  ///< where it does
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<SceneObject> objects;

@@ -1,13 +1,79 @@
 #include "kerf/io/texture_read.h"
 
+#include <fmt/format.h>
+
+#include <limits>
+#include <memory>
+
 #include "kerf/base/error.h"
+#include "kerf/io/mapped_file.h"
+#include "kerf/io/texture_check.h"
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpragmas"
+#pragma GCC diagnostic ignored "-Wunknown-warning-option"
+#pragma GCC diagnostic ignored "-Wall"
+#pragma GCC diagnostic ignored "-Wextra"
+#pragma GCC diagnostic ignored "-Wpedantic"
+#pragma GCC diagnostic ignored "-Wshadow"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC  // other libraries bring a copy of their own
+#define STBI_NO_STDIO
+#define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_TGA
+#define STBI_ONLY_BMP
+#include <stb/stb_image.h>
+#pragma GCC diagnostic pop
 
 namespace kerf {
+namespace {
 
-Texture decode_texture(std::span<const char>, const std::string& name) {
-  throw Error(ErrorCode::file, name, "being written");
+bool ends_like_texture(std::string name) {
+  for (char& c : name) c = 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  for (const char* extension : {".png", ".jpg", ".jpeg", ".tga", ".bmp"}) {
+    if (name.ends_with(extension)) return true;
+  }
+  return false;
 }
 
-Texture read_texture(const std::string& path) { throw Error(ErrorCode::file, path, "being written"); }
+}  // namespace
+
+bool is_texture(std::span<const char> bytes, const std::string& name) {
+  const TextureFormat format = texture_format(bytes);
+  const bool has_signature = format != TextureFormat::unknown && format != TextureFormat::tga;
+  return has_signature || ends_like_texture(name);
+}
+
+Texture decode_texture(std::span<const char> bytes, const std::string& name) {
+  constexpr uint64_t kMostPixels = uint64_t{1} << 28;
+  const auto fail = [&](const std::string& sentence) { throw Error(ErrorCode::file, name, sentence); };
+  if (bytes.empty()) fail("is not an image: the file is empty");
+  if (bytes.size() > std::numeric_limits<int>::max()) fail("has more bytes than are read of an image (2^31)");
+  if (const std::string fault = texture_fault(bytes, texture_format(bytes)); !fault.empty()) fail(fault);
+
+  const auto* const data = reinterpret_cast<const stbi_uc*>(bytes.data());
+  const int size = static_cast<int>(bytes.size());
+  int width = 0, height = 0, channels = 0;
+  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) {
+    fail(fmt::format("cannot be decoded ({})", stbi_failure_reason()));
+  }
+  if (width <= 0 || height <= 0) fail("has no pixels");
+  if (static_cast<uint64_t>(width) * static_cast<uint64_t>(height) > kMostPixels) {
+    fail(fmt::format("has {} x {} pixels; at most 2^28 are read", width, height));
+  }
+  const std::unique_ptr<stbi_uc, void (*)(void*)> rgb(
+      stbi_load_from_memory(data, size, &width, &height, &channels, 3), stbi_image_free);
+  if (rgb == nullptr) fail(fmt::format("cannot be decoded ({})", stbi_failure_reason()));
+  Texture texture{static_cast<uint32_t>(width), static_cast<uint32_t>(height), {}};
+  texture.rgb.assign(rgb.get(), rgb.get() + size_t{texture.width} * texture.height * 3);
+  return texture;
+}
+
+Texture read_texture(const std::string& path) {
+  const MappedFile file(path);
+  return decode_texture(file.bytes(), path);
+}
 
 }  // namespace kerf

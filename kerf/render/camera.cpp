@@ -60,11 +60,12 @@ CameraRays::CameraRays(const Camera& camera, uint32_t width, uint32_t height)
   down_ = cross(forward_, side) * (half_height / length(side));
 }
 
-Ray CameraRays::operator()(uint32_t x, uint32_t y) const {
-  const Vec3d through = forward_ + right_ * ((x + 0.5) / width_ * 2 - 1) + down_ * ((y + 0.5) / height_ * 2 - 1);
+Ray CameraRays::operator()(double x, double y) const {
+  const Vec3d through = forward_ + right_ * (x / width_ * 2 - 1) + down_ * (y / height_ * 2 - 1);
   Ray ray;
   ray.origin = origin_;
   ray.direction = to_float(through / length(through));
+  ray.mask = kCameraMask;
   return ray;
 }
 

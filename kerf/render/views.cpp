@@ -124,7 +124,7 @@ ViewResult render_view(const Scene& scene, const Camera& camera, const ViewOptio
       const bool reached = !stop.load(std::memory_order_relaxed);
       for (uint32_t x = 0; x < options.width; ++x) {
         TraceCounts own;
-        const Hit hit = reached ? scene.closest_hit(rays(x, static_cast<uint32_t>(y)), own) : Hit{};
+        const Hit hit = reached ? scene.closest_hit(rays.center(x, static_cast<uint32_t>(y)), own) : Hit{};
         write_values(scene, options.view, hit, own, &result.values.pixels[(y * options.width + x) * channels]);
         counts.nodes += own.nodes;
         counts.primitives += own.primitives;

@@ -47,7 +47,7 @@ std::vector<Ray> camera_rays(const Camera& camera, uint32_t width, uint32_t heig
   const CameraRays pixel(camera, width, height);
   std::vector<Ray> rays;
   for (uint32_t y = 0; y < height; ++y) {
-    for (uint32_t x = 0; x < width; ++x) rays.push_back(pixel(x, y));
+    for (uint32_t x = 0; x < width; ++x) rays.push_back(pixel.center(x, y));
   }
   return rays;
 }

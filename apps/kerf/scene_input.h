@@ -1,0 +1,42 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "kerf/render/camera.h"
+#include "kerf/render/render_scene.h"
+
+namespace kerf::app {
+
+/// What commands that read a scene are told about it.
+struct SceneArguments {
+  std::string input, structure, json;
+  std::vector<double> eye, look_at, up;
+  double fov = 0;  // 0: not given
+  int threads = 0;
+  bool skip_invalid = false, quiet = false;
+};
+
+/// Adds the options for them to a command.
+void add_scene_options(CLI::App& command, SceneArguments& arguments);
+void add_camera_options(CLI::App& command, SceneArguments& arguments);
+
+/// A scene with all that its file may leave open settled.
+struct SceneInput {
+  SceneDescription description;
+  Camera camera;
+  BuildOptions build;
+};
+
+/// Reads the file, prints its notes, settles camera, structure and light: what was given on the command line goes
+/// before what the file says, and that before the defaults.
+SceneInput read_input(const SceneArguments& arguments, double aspect);
+
+nlohmann::ordered_json report_json(const BuildReport& report);
+
+/// Says on standard error what the build changed.
+void print_build_notes(const BuildReport& report);
+
+}  // namespace kerf::app

@@ -1,0 +1,38 @@
+#include "kerf/io/notes.h"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+namespace kerf {
+
+void Notes::add(const std::string& sentence, const std::string& subject) {
+  for (Note& note : notes_) {
+    if (note.sentence != sentence) continue;
+    ++note.count;
+    return;
+  }
+  notes_.push_back({sentence, subject, 1});
+}
+
+std::vector<std::string> Notes::sentences() const {
+  std::vector<std::string> all;
+  for (const Note& note : notes_) {
+    if (note.subject.empty()) {
+      all.push_back(note.sentence);
+    } else if (note.count == 1) {
+      all.push_back(fmt::format("{} ({})", note.sentence, note.subject));
+    } else {
+      all.push_back(fmt::format("{} ({} and {} more)", note.sentence, note.subject, note.count - 1));
+    }
+  }
+  return all;
+}
+
+std::string sentence_of(const Error& error) {
+  const std::string_view what = error.what();
+  const size_t prefix = error.place().empty() ? 0 : error.place().size() + 2;  // "place: "
+  return std::string(what.substr(std::min(prefix, what.size())));
+}
+
+}  // namespace kerf

@@ -1,0 +1,224 @@
+#include "kerf/io/obj_materials.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <unordered_map>
+#include <unordered_set>
+
+#include "kerf/base/error.h"
+#include "kerf/base/nearest_word.h"
+#include "kerf/io/mapped_file.h"
+#include "kerf/io/message.h"
+#include "kerf/io/mtl.h"
+#include "kerf/io/obj_cursor.h"
+#include "kerf/io/texture_read.h"
+
+namespace kerf {
+namespace {
+
+using std::filesystem::path;
+
+/// The file that is named in another one, relative to its folder, with slashes of either kind; or else the file of this
+/// name in the folder itself, as models are moved without the folders that they were made in. Empty where there is
+/// neither. Only regular files: a device could be read without end.
+std::string find_beside(const path& folder, std::string name) {
+  if (name.empty() || name.find('\0') != name.npos) return {};
+  std::replace(name.begin(), name.end(), '\\', '/');
+  for (const path& candidate : {folder / name, folder / path(name).filename()}) {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(candidate, ignored)) return candidate.lexically_normal().string();
+  }
+  return {};
+}
+
+/// A material and the folder that its texture's name is relative to.
+struct FoundMaterial {
+  MtlMaterial made;
+  path folder;
+};
+
+/// The materials of all libraries.
+class Libraries {
+ public:
+  Libraries(path folder, std::vector<std::string>& notes) : folder_(std::move(folder)), notes_(notes) {}
+
+  /// Loads what a mtllib statement names: one file, or several where there is none of the whole name.
+  void load(const std::string& names) {
+    if (const std::string whole = find_beside(folder_, names); !whole.empty()) return load_file(whole);
+    for (size_t begin = names.find_first_not_of(" \t"); begin != names.npos;) {
+      const size_t end = std::min(names.find_first_of(" \t", begin), names.size());
+      load_one(names.substr(begin, end - begin));
+      begin = names.find_first_not_of(" \t", end);
+    }
+  }
+
+  const FoundMaterial* find(const std::string& name) const {
+    const auto found = materials_.find(name);
+    return found == materials_.end() ? nullptr : &found->second;
+  }
+
+  /// Whether every material there is has been loaded.
+  bool complete() const { return loaded_.size() > 0 && missing_.empty(); }
+  bool none() const { return loaded_.empty() && missing_.empty(); }
+
+  std::string_view nearest(const std::string& name) const {
+    std::vector<std::string_view> names;
+    for (const auto& entry : materials_) names.push_back(entry.first);
+    std::sort(names.begin(), names.end());
+    return nearest_word(name, names);
+  }
+
+ private:
+  void load_one(const std::string& name) {
+    if (const std::string found = find_beside(folder_, name); !found.empty()) return load_file(found);
+    if (!missing_.insert(name).second) return;
+    notes_.push_back(fmt::format("the material library {} was not found; default materials are used", quoted(name)));
+  }
+
+  void load_file(const std::string& file) {
+    if (!loaded_.insert(file).second) return;
+    MtlLibrary library = parse_mtl(MappedFile(file).bytes(), file);
+    for (MtlMaterial& made : library.materials) {
+      const std::string name = made.material.name;
+      if (materials_.try_emplace(name, FoundMaterial{std::move(made), path(file).parent_path()}).second) continue;
+      note(fmt::format("the material {} stands in two libraries; the first is used", quoted(name)));
+    }
+    for (const std::string& sentence : library.notes) note(sentence);
+  }
+
+  void note(const std::string& sentence) {
+    if (std::find(notes_.begin(), notes_.end(), sentence) == notes_.end()) notes_.push_back(sentence);
+  }
+
+  path folder_;
+  std::vector<std::string>& notes_;
+  std::unordered_map<std::string, FoundMaterial> materials_;
+  std::unordered_set<std::string> loaded_, missing_;
+};
+
+/// The textures of a model, each file once.
+class Textures {
+ public:
+  Textures(std::vector<Texture>& textures, std::vector<std::string>& notes) : textures_(textures), notes_(notes) {}
+
+  /// The number of the texture; kNoTexture with a note where there is none.
+  uint32_t load(const path& folder, const std::string& name) {
+    const std::string file = find_beside(folder, name);
+    const auto [entry, is_new] = numbers_.try_emplace(file.empty() ? name : file, kNoTexture);
+    if (!is_new) return entry->second;
+    if (file.empty()) {
+      notes_.push_back(fmt::format("the texture {} was not found", quoted(name)));
+    } else if (std::optional<Texture> texture = read(file)) {
+      entry->second = static_cast<uint32_t>(textures_.size());
+      textures_.push_back(std::move(*texture));
+    }
+    return entry->second;
+  }
+
+ private:
+  /// A file in a format that Kerf does not know loses no more than its colours; one that is damaged is an error.
+  std::optional<Texture> read(const std::string& file) {
+    const MappedFile mapped(file);
+    if (!is_texture(mapped.bytes(), file)) {
+      notes_.push_back(fmt::format("the texture {} is not shown: it is not a PNG, JPEG, TGA or BMP",
+                                   quoted(path(file).filename().string())));
+      return std::nullopt;
+    }
+    return decode_texture(mapped.bytes(), file);
+  }
+
+  std::vector<Texture>& textures_;
+  std::vector<std::string>& notes_;
+  std::unordered_map<std::string, uint32_t> numbers_;
+};
+
+/// A usemtl statement and the triangles that it is for.
+struct MaterialUse {
+  std::string name;
+  const char* at;
+  uint64_t begin, end;
+};
+
+std::vector<MaterialUse> material_uses(std::span<const ObjChunk> chunks) {
+  std::vector<MaterialUse> uses;
+  for (const ObjChunk& chunk : chunks) {
+    for (const ObjName& used : chunk.materials) {
+      const uint64_t begin = chunk.before.triangles + used.triangle;
+      if (!uses.empty()) uses.back().end = begin;
+      uses.push_back({obj_name(used.name), used.at, begin, begin});
+    }
+  }
+  if (!uses.empty()) uses.back().end = total_counts(chunks).triangles;
+  return uses;
+}
+
+/// The materials of a model, in the order of their first use.
+class UsedMaterials {
+ public:
+  UsedMaterials(const Libraries& libraries, Model& model)
+      : libraries_(libraries), model_(model), textures_(model.textures, model.notes) {}
+
+  /// The number of the material; a default one of this name where no library has it.
+  uint32_t number(const std::string& name) {
+    const auto [entry, is_new] = numbers_.try_emplace(name, static_cast<uint32_t>(model_.materials.size()));
+    if (is_new) model_.materials.push_back(make(name));
+    return entry->second;
+  }
+
+ private:
+  Material make(const std::string& name) {
+    const FoundMaterial* found = libraries_.find(name);
+    if (found == nullptr) {
+      Material material;
+      material.name = name.empty() ? "default" : name;
+      return material;
+    }
+    Material material = found->made.material;
+    if (!found->made.albedo_map.empty()) {
+      const Material without;
+      material.albedo_texture = textures_.load(found->folder, found->made.albedo_map);
+      const bool has_texture = material.albedo_texture != kNoTexture;
+      if (found->made.is_map_alone) material.albedo = has_texture ? Vec3f{1, 1, 1} : without.albedo;
+    }
+    return material;
+  }
+
+  const Libraries& libraries_;
+  Model& model_;
+  Textures textures_;
+  std::unordered_map<std::string, uint32_t> numbers_;
+};
+
+}  // namespace
+
+void add_obj_materials(std::span<const char> text, std::span<const ObjChunk> chunks, const std::string& name,
+                       Model& model) {
+  Libraries libraries(path(name).parent_path(), model.notes);
+  for (const ObjChunk& chunk : chunks) {
+    for (const ObjName& library : chunk.libraries) libraries.load(obj_name(library.name));
+  }
+  const std::vector<MaterialUse> uses = material_uses(chunks);
+  if (uses.empty()) return;
+  if (libraries.none()) model.notes.emplace_back("it names materials, but no library (mtllib); default ones are used");
+
+  UsedMaterials used(libraries, model);
+  std::vector<uint32_t>& materials = model.mesh.materials;
+  materials.resize(model.mesh.triangles.size());
+  if (uses[0].begin > 0) std::fill_n(materials.begin(), uses[0].begin, used.number(""));
+  for (const MaterialUse& use : uses) {
+    if (!use.name.empty() && libraries.complete() && libraries.find(use.name) == nullptr) {
+      const std::string_view nearest = libraries.nearest(use.name);
+      throw obj_error(text, name,
+                      {use.at, fmt::format("no material library has the material {}{}", quoted(use.name),
+                                           nearest.empty() ? "" : fmt::format("; did you mean {}?", quoted(nearest)))});
+    }
+    if (use.begin == use.end) continue;
+    std::fill(materials.begin() + static_cast<ptrdiff_t>(use.begin), materials.begin() + static_cast<ptrdiff_t>(use.end),
+              used.number(use.name));
+  }
+}
+
+}  // namespace kerf

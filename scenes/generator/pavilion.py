@@ -1,0 +1,73 @@
+"""The default picture: an atelier under a twisted timber roof."""
+
+from random import Random
+
+from generator import pavilion_building as building
+from generator import pavilion_things as things
+from generator.scene import Scene
+
+DESCRIPTION = (
+    "An atelier under a roof of straight timbers that twist into a saddle, a lattice of crossing battens on its sunny "
+    "side. Nearly everything is long, thin and, as the hall stands askew, parallel to no axis: what an ordinary "
+    "bounding volume hierarchy is slow on, and splitting helps."
+)
+
+
+def scene():
+    scene = Scene("pavilion", DESCRIPTION, turn=31, move=(-8.0, 0.0, 0.0))
+    scene.settings = {
+        "background_color": (0.62, 0.78, 1.0),
+        "background_intensity": 1.0,
+        "ambient_light": 0.0,
+        "structure": "early_split(budget=1.5)+binned_sah",
+    }
+    _materials(scene)
+    _light(scene)
+    random = Random(7)
+    building.build(scene, random)
+    building.ramp(scene)
+    building.spiral_stair(scene)
+    things.furnish(scene, random)
+    scene.look(eye=(-1.2, 1.6, 3.4), look_at=(12.0, 2.35, 5.4), fov=54)
+    return scene
+
+
+def _materials(scene):
+    for name, albedo in {
+        "oak": (0.46, 0.31, 0.19),
+        "oak_light": (0.58, 0.43, 0.28),
+        "oak_dark": (0.28, 0.18, 0.115),
+        "plaster": (0.80, 0.77, 0.72),
+        "plaster_warm": (0.72, 0.66, 0.58),
+        "concrete": (0.46, 0.45, 0.43),
+        "concrete_warm": (0.49, 0.47, 0.44),
+        "joint": (0.10, 0.10, 0.10),
+        "black": (0.035, 0.035, 0.04),
+        "terracotta": (0.58, 0.21, 0.11),
+        "blue": (0.07, 0.15, 0.24),
+        "ochre": (0.74, 0.46, 0.10),
+        "paper": (0.78, 0.76, 0.70),
+        "leaf": (0.13, 0.24, 0.06),
+        "leaf_light": (0.24, 0.34, 0.10),
+        "grass": (0.42, 0.38, 0.18),
+        "hedge": (0.10, 0.15, 0.06),
+        "gravel": (0.52, 0.48, 0.41),
+    }.items():
+        scene.material(name, "lambertian", albedo=albedo)
+    scene.material("steel", "metal", albedo=(0.62, 0.62, 0.63), roughness=0.35)
+    scene.material("brass", "metal", albedo=(0.90, 0.66, 0.30), roughness=0.22)
+    scene.material("glass", "glass", albedo=(1, 1, 1), refractive_index=1.5)
+    scene.material("bulb", "constant", albedo=(4.0, 2.6, 1.4))
+    scene.material("sun", "light", emission=(56000, 45000, 31000))
+    scene.material("north_light", "light", emission=(1.6, 2.1, 2.8))
+
+
+def _light(scene):
+    distance = 90
+    direction = (0.36, 0.44, 0.82)
+    center = tuple(c + distance * d for c, d in zip((12, 3, 5), direction))
+    scene.sphere("sun", center, 0.7, "A low sun beyond the lattice", visible=False)
+    scene.rectangle("north_light", (0, 3.0, -0.6), (24, 3.7, 0), (0, 0.9, 0), "Sky in the strip of light over the wall",
+                    visible=False)
+    scene.rectangle("gravel", (-10, -0.2, 11.3), (46, 0, 0), (0, 0, 14), "The garden")
+    scene.rectangle("gravel", (26, -0.2, -8), (10, 0, 0), (0, 0, 19.3))
