@@ -15,7 +15,6 @@ using Json = nlohmann::ordered_json;
 
 int check(const SceneArguments& a) {
   SceneInput input = read_input(a, 1.5);
-  CameraRays(input.camera, 3, 2);
   const std::vector<std::string> notes = input.description.notes;
   const RenderScene scene(std::move(input.description), input.build);
   const BuildReport& report = scene.scene().report();

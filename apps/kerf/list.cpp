@@ -6,11 +6,15 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/kerf/command.h"
+#include "kerf/io/material.h"
+#include "kerf/io/model.h"
 #include "kerf/render/views.h"
 #include "kerf/scene/menu.h"
 
 namespace kerf::app {
 namespace {
+
+constexpr std::string_view kBeauty = "beauty", kBeautySentence = "the path-traced picture";
 
 nlohmann::ordered_json menu_json() {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
@@ -35,13 +39,17 @@ nlohmann::ordered_json menu_json() {
                    {"source", entry.source},
                    {"options", options}});
   }
-  for (const ViewEntry& view : views()) {
-    all.push_back({{"kind", "view"},
-                   {"name", view.name},
-                   {"sentence", view.sentence},
+  const auto add = [&](std::string_view kind, std::string_view name, std::string_view sentence) {
+    all.push_back({{"kind", kind},
+                   {"name", name},
+                   {"sentence", sentence},
                    {"source", ""},
                    {"options", nlohmann::ordered_json::array()}});
-  }
+  };
+  add("view", kBeauty, kBeautySentence);
+  for (const ViewEntry& view : views()) add("view", view.name, view.sentence);
+  for (const MaterialTypeEntry& type : material_types()) add("material", type.name, type.sentence);
+  for (const std::string& extension : model_extensions()) add("format", extension, "a model that can be read");
   return all;
 }
 
@@ -58,14 +66,28 @@ void print_menu() {
       fmt::print("  {:<18}{} = {}: {}\n", "", spec.name, to_text(spec.fallback), spec.sentence);
     }
   }
-  fmt::print("\nviews\n");
+  fmt::print("\nviews\n  {:<16}{}\n", kBeauty, kBeautySentence);
   for (const ViewEntry& view : views()) fmt::print("  {:<16}{}\n", view.name, view.sentence);
+  fmt::print("\nmaterials of YAML scenes\n");
+  for (const MaterialTypeEntry& type : material_types()) fmt::print("  {:<16}{}\n", type.name, type.sentence);
+  fmt::print("\nmodels that can be read\n ");
+  size_t column = 2;
+  for (const std::string& extension : model_extensions()) {
+    if (column + extension.size() > 110) {
+      fmt::print("\n ");
+      column = 2;
+    }
+    fmt::print(" {}", extension);
+    column += extension.size() + 1;
+  }
+  fmt::print("\n");
 }
 
 }  // namespace
 
 void add_list(CLI::App& app, std::function<int()>& run) {
-  CLI::App* command = app.add_subcommand("list", "Prints all splitters, builders, structures and views.");
+  CLI::App* command =
+      app.add_subcommand("list", "Prints all splitters, builders, structures, views, materials and model formats.");
   command->footer("Example: kerf list --json -");
   auto json = std::make_shared<std::string>();
   command->add_option("--json", *json, "Write the menu to this file as JSON; '-' is standard output");

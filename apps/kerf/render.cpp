@@ -13,6 +13,7 @@
 #include "kerf/base/error.h"
 #include "kerf/base/nearest_word.h"
 #include "kerf/io/image_write.h"
+#include "kerf/render/bare_model.h"
 #include "kerf/render/compare.h"
 #include "kerf/render/path_tracer.h"
 #include "kerf/render/views.h"
@@ -146,6 +147,7 @@ int render(Arguments a) {
   if (!a.compare.empty()) parse_pipeline(a.compare);
   check_output(a.output);
   SceneInput input = read_input(a, aspect);
+  if (view == nullptr && !input.description.is_lit) add_light(input.description, input.camera, input.build);
   const Json comparison = a.compare.empty() ? Json() : compare(input, a, aspect);
   const RenderScene scene(std::move(input.description), input.build);
   const BuildReport& report = scene.scene().report();

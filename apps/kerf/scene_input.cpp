@@ -81,7 +81,7 @@ SceneInput read_input(const SceneArguments& arguments, double aspect) {
   }
   input.camera = settled_camera(arguments, input.description, aspect);
   input.build = {settled_structure(arguments, input.description), arguments.threads, arguments.skip_invalid};
-  if (!input.description.is_lit) add_light(input.description, input.camera);
+  CameraRays(input.camera, 3, 2);  // says what is wrong with it before any work is done
   return input;
 }
 

@@ -30,8 +30,8 @@ struct SceneInput {
   BuildOptions build;
 };
 
-/// Reads the file, prints its notes, settles camera, structure and light: what was given on the command line goes
-/// before what the file says, and that before the defaults.
+/// Reads the file, prints its notes, settles camera and structure: what was given on the command line goes before what
+/// the file says, and that before the defaults.
 SceneInput read_input(const SceneArguments& arguments, double aspect);
 
 nlohmann::ordered_json report_json(const BuildReport& report);

@@ -55,8 +55,8 @@ void find_sparse(GltfFile& file, const tinygltf::Accessor& from, const std::stri
   accessor.sparse_values = values.data() + value_offset;
   for (size_t i = 0; i < count; ++i) {
     if (const size_t index = gltf_detail::sparse_index(accessor, i); index >= accessor.count) {
-      file.fail(fmt::format("{}.sparse.indices has {} at {}; the accessor has {} elements", name, index, i,
-                            accessor.count));
+      file.fail(
+          fmt::format("{}.sparse.indices has {} at {}; the accessor has {} elements", name, index, i, accessor.count));
     }
   }
 }

@@ -18,7 +18,8 @@ constexpr std::array<uint8_t, 256> make_base64_digits() {
   constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::array<uint8_t, 256> digits{};
   for (uint8_t& digit : digits) digit = kNoDigit;
-  for (size_t i = 0; i < kAlphabet.size(); ++i) digits[static_cast<unsigned char>(kAlphabet[i])] = static_cast<uint8_t>(i);
+  for (size_t i = 0; i < kAlphabet.size(); ++i)
+    digits[static_cast<unsigned char>(kAlphabet[i])] = static_cast<uint8_t>(i);
   return digits;
 }
 
@@ -51,7 +52,8 @@ int hex_digit(char c) {
 std::string percent_decoded(std::string_view uri) {
   std::string name;
   for (size_t i = 0; i < uri.size(); ++i) {
-    const bool is_code = uri[i] == '%' && i + 2 < uri.size() && hex_digit(uri[i + 1]) >= 0 && hex_digit(uri[i + 2]) >= 0;
+    const bool is_code =
+        uri[i] == '%' && i + 2 < uri.size() && hex_digit(uri[i + 1]) >= 0 && hex_digit(uri[i + 2]) >= 0;
     name += is_code ? static_cast<char>(hex_digit(uri[i + 1]) * 16 + hex_digit(uri[i + 2])) : uri[i];
     if (is_code) i += 2;
   }
@@ -116,7 +118,7 @@ std::span<const char> GltfBytes::open(std::string_view raw_uri, const std::strin
   const std::string_view uri = is_plain ? raw_uri : std::string_view(unescaped);
   const std::string_view scheme = scheme_of(uri);
   if (scheme.empty()) return open_file(std::string(uri), name);
-  if (scheme != "data") fail(name, fmt::format("is at {}; only files and data: URIs can be read", quoted(uri)));
+  if (scheme != "data") fail(name, fmt::format("is at {}; only files and data: URIs can be read", kerf::quoted(uri)));
   const size_t comma = uri.find(',');
   if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64")) {
     fail(name, "has a data: URI that is not in base64");
@@ -132,14 +134,14 @@ std::span<const char> GltfBytes::open_file(const std::string& uri, const std::st
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(file, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    fail(name, fmt::format("is at {}, which is not a regular file", quoted(uri)));
+    fail(name, fmt::format("is at {}, which is not a regular file", kerf::quoted(uri)));
   }
   try {
     Source& source = sources_.emplace_back();
     source.file = std::make_unique<MappedFile>(file.string());
     return source.file->bytes();
   } catch (const Error& inner) {
-    fail(name, fmt::format("is at {}: {}", quoted(uri), sentence_of(inner)));
+    fail(name, fmt::format("is at {}: {}", kerf::quoted(uri), sentence_of(inner)));
   }
 }
 

@@ -22,7 +22,8 @@ GltfContainer open_gltf_container(std::span<const char> bytes, const std::string
   if (!text.starts_with("glTF")) return {text, {}};
   const auto fail = [&](const std::string& sentence) { throw Error(ErrorCode::file, path, sentence); };
 
-  if (bytes.size() < kHeaderSize) fail(fmt::format("is cut short in the header of a GLB, after {} bytes", bytes.size()));
+  if (bytes.size() < kHeaderSize)
+    fail(fmt::format("is cut short in the header of a GLB, after {} bytes", bytes.size()));
   if (const uint32_t version = number_at(bytes, 4); version != 2) {
     fail(fmt::format("is a GLB of version {}; only 2 can be read", version));
   }

@@ -14,8 +14,8 @@ namespace {
 
 // What may be required of a reader, and is done.
 constexpr std::string_view kSupported[] = {
-    "KHR_materials_emissive_strength", "KHR_materials_ior",     "KHR_materials_transmission",
-    "KHR_materials_unlit",             "KHR_mesh_quantization", "KHR_texture_transform",
+    "KHR_materials_emissive_strength", "KHR_materials_ior",     "KHR_materials_transmission", "KHR_materials_unlit",
+    "KHR_mesh_quantization",           "KHR_texture_transform",
 };
 // What has a note of its own where it has no effect.
 constexpr std::string_view kNoted[] = {"KHR_lights_punctual", "KHR_materials_pbrSpecularGlossiness",
@@ -83,12 +83,12 @@ GltfFile load_gltf(const GltfContainer& container, const std::string& path) {
   } catch (const std::exception& inner) {
     error = inner.what();
   }
+  check_extensions(file);  // first: without one that is required, the rest may make no sense to it
   // It skips a primitive that it cannot read, and says so only here.
   if (!is_read || !error.empty()) file.fail(fmt::format("is no glTF 2.0: {}", first_line(error)));
   if (!file.json.asset.minVersion.empty() && file.json.asset.minVersion != "2.0") {
     file.fail(fmt::format("needs a reader of glTF {}; 2.0 can be read", printable(file.json.asset.minVersion)));
   }
-  check_extensions(file);
   return file;
 }
 

@@ -65,7 +65,8 @@ class Scanner {
     skip_space();
     if (at_ < text_.size() && text_[at_] != '\0') fail("expected the end of the file");
     if (!version_.empty() && !version_.starts_with("2.")) {
-      throw Error(ErrorCode::file, path_, fmt::format("is glTF of version {}; only 2 can be read", printable(version_)));
+      throw Error(ErrorCode::file, path_,
+                  fmt::format("is glTF of version {}; only 2 can be read", printable(version_)));
     }
     if (!violation_.empty()) throw Error(ErrorCode::file, path_, violation_);
     cut();
@@ -120,7 +121,8 @@ class Scanner {
       keep_string(inside);
     } else if (c == '-' || ('0' <= c && c <= '9')) {
       token = Token::number;
-      while (at_ < text_.size() && std::string_view("+-.eE0123456789").find(text_[at_]) != std::string_view::npos) ++at_;
+      while (at_ < text_.size() && std::string_view("+-.eE0123456789").find(text_[at_]) != std::string_view::npos)
+        ++at_;
       const std::string_view digits = text_.substr(begin, at_ - begin);
       check(rule, token, digits);
       keep_number(digits);
@@ -243,8 +245,8 @@ class Scanner {
 
   void check(const GltfRule* rule, Token token, std::string_view text) {
     if (rule == nullptr || fits(rule->type, token, text) || !violation_.empty()) return;
-    const std::string what = token == Token::object  ? "an object"
-                             : token == Token::array ? "an array"
+    const std::string what = token == Token::object   ? "an object"
+                             : token == Token::array  ? "an array"
                              : token == Token::string ? quoted(text)
                                                       : printable(text);
     violation_ = fmt::format("{} is {}; expected {}", here(), what, expectation(rule->type));

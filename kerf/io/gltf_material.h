@@ -23,18 +23,9 @@ class GltfMaterials {
   GltfUvs uvs(int number) const;
 
   /// Puts materials and textures into the model, whose materials stay empty where the file has none.
-  void finish(Model& model);
+  void finish(Model& model) const;
 
  private:
-  tinygltf::TextureInfo base_texture(const tinygltf::Material& from, std::string_view user) const;
-  Material convert(size_t number);
-  void set_type(const tinygltf::Material& from, const std::string& name, double alpha, Material& material);
-  void set_metal(const tinygltf::Material& from, const std::string& name, Material& material);
-  void set_emission(const tinygltf::Material& from, const std::string& name, Material& material);
-  void note_rest(const tinygltf::Material& from, const std::string& name, double alpha);
-  /// In [0, 1], with a note where it was not.
-  float share(double value, const std::string& name);
-
   GltfFile& file_;
   std::vector<bool> is_used_;
   bool is_default_used_ = false;

@@ -113,16 +113,30 @@ static_assert(std::is_sorted(std::begin(kRules), std::end(kRules),
 constexpr std::string_view kAttributes = "meshes[].primitives[].attributes.";
 constexpr GltfRule kAttribute = {kAttributes, index};
 
+// Extensions stand anywhere, and tinygltf passes over those that are no objects.
+constexpr std::string_view kExtensions = "extensions";
+constexpr GltfRule kExtension = {kExtensions, object};
+
+bool is_extensions(std::string_view key) {
+  return key == kExtensions || (key.ends_with(kExtensions) && key[key.size() - kExtensions.size() - 1] == '.');
+}
+
+bool is_extension(std::string_view key) {
+  if (key.find("extras") != std::string_view::npos) return false;
+  return is_extensions(key) || is_extensions(key.substr(0, std::min(key.rfind('.'), key.size())));
+}
+
 }  // namespace
 
 const GltfRule* find_gltf_rule(std::string_view key) {
   const GltfRule* found = std::lower_bound(std::begin(kRules), std::end(kRules), key, before);
   if (found != std::end(kRules) && found->key == key) return found;
-  return key.starts_with(kAttributes) ? &kAttribute : nullptr;
+  if (key.starts_with(kAttributes)) return &kAttribute;
+  return is_extension(key) ? &kExtension : nullptr;
 }
 
 size_t number_of(const GltfRule& rule) {
-  return &rule == &kAttribute ? kGltfRuleCount : static_cast<size_t>(&rule - kRules);
+  return &rule == &kAttribute || &rule == &kExtension ? kGltfRuleCount : static_cast<size_t>(&rule - kRules);
 }
 
 std::string_view expectation(GltfType type) {

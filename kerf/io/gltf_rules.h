@@ -15,8 +15,10 @@ struct GltfRule {
 
 inline constexpr size_t kGltfRuleCount = 92;
 
-/// The rule for a value, with its number; null where there is none, as for all that is not read.
+/// The rule for a value; null where there is none, as for all that is not read.
 const GltfRule* find_gltf_rule(std::string_view key);
+
+/// The number of a rule for one key, below kGltfRuleCount; that itself for a rule for many.
 size_t number_of(const GltfRule& rule);
 
 /// "an integer of at least 0".

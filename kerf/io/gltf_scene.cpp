@@ -67,7 +67,8 @@ class Walker {
       scene_.instances.push_back({node.mesh, place});
       if (node.skin >= 0) file_.notes.add("skins have no effect; the mesh is shown as it is without one", name);
     }
-    if (node.camera >= 0) take_camera(file_.member(file_.json.cameras, node.camera, "cameras", name), node.camera, place);
+    if (node.camera >= 0)
+      take_camera(file_.member(file_.json.cameras, node.camera, "cameras", name), node.camera, place);
     if (node.extensions.count("KHR_lights_punctual") > 0) file_.notes.add("lights of the file have no effect", name);
     if (node.extensions.count("EXT_mesh_gpu_instancing") > 0) {
       file_.notes.add("EXT_mesh_gpu_instancing has no effect; the mesh is shown once", name);

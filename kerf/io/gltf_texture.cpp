@@ -132,7 +132,8 @@ std::optional<Texture> GltfTextures::decode(int image) {
     return decode_texture(bytes, name);
   } catch (const Error& error) {
     const std::string sentence = sentence_of(error);
-    file_.notes.add(fmt::format("a texture is left out: {}{}", sentence.starts_with(name) ? "" : name + ": ", sentence));
+    file_.notes.add(
+        fmt::format("a texture is left out: {}{}", sentence.starts_with(name) ? "" : name + ": ", sentence));
     return {};
   }
 }

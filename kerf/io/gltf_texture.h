@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -13,10 +14,10 @@ namespace kerf {
 
 /// Which texture coordinates a texture is looked up with, and what is done to them first.
 struct GltfUvs {
-  int set = 0;               ///< of TEXCOORD_
-  bool is_identity = true;   ///< nothing is done
-  bool is_repeated = true;   ///< false where the file wants the texture clamped or mirrored outside [0, 1]
-  double u[3] = {1, 0, 0};   ///< the new u is u[0] * u + u[1] * v + u[2]
+  int set = 0;              ///< of TEXCOORD_
+  bool is_identity = true;  ///< nothing is done
+  bool is_repeated = true;  ///< false where the file wants the texture clamped or mirrored outside [0, 1]
+  double u[3] = {1, 0, 0};  ///< the new u is u[0] * u + u[1] * v + u[2]
   double v[3] = {0, 1, 0};
 };
 

@@ -104,7 +104,8 @@ void write_png(const std::string& path, const Image& image) {
 
 #ifndef KERF_HAVE_OPENEXR
 void write_exr(const std::string& path, const Image&) {
-  throw Error(ErrorCode::file, path, "this build cannot write EXR, as OpenEXR was not there; .png and .pfm can be written");
+  throw Error(ErrorCode::file, path,
+              "this build cannot write EXR, as OpenEXR was not there; .png and .pfm can be written");
 }
 #endif
 

@@ -37,7 +37,8 @@ MeshBuilder::Counts& MeshBuilder::Counts::operator+=(const Counts& more) {
 void MeshBuilder::reserve(const Counts& counts, const std::string& place) {
   constexpr uint64_t kMostVertices = kNone - 1, kMostTriangles = std::numeric_limits<int32_t>::max();
   if (counts.triangles > kMostTriangles) {
-    throw Error(ErrorCode::too_large, place, fmt::format("{} triangles; at most 2^31 - 1 can be read", counts.triangles));
+    throw Error(ErrorCode::too_large, place,
+                fmt::format("{} triangles; at most 2^31 - 1 can be read", counts.triangles));
   }
   const uint64_t most = std::max({counts.vertices, counts.normals, counts.uvs});
   if (most > kMostVertices) {

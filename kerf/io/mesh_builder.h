@@ -43,9 +43,7 @@ class MeshBuilder {
   void set_vertex(size_t number, Vec3d local) { mesh_.vertices[number] = to_float(place_.point(local)); }
   /// Of any length; with one of length 0 or not finite the triangles that use it are flat.
   void set_normal(size_t number, Vec3d local);
-  void set_uv(size_t number, double u, double v) {
-    mesh_.uvs[number] = {static_cast<float>(u), static_cast<float>(v)};
-  }
+  void set_uv(size_t number, double u, double v) { mesh_.uvs[number] = {static_cast<float>(u), static_cast<float>(v)}; }
 
   void begin_part(const Part& part);
 

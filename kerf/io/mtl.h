@@ -11,7 +11,7 @@ namespace kerf {
 /// A material of an MTL file, its texture not yet loaded.
 struct MtlMaterial {
   Material material;
-  std::string albedo_map;  ///< the file that map_Kd names, as it is written; empty: none
+  std::string albedo_map;     ///< the file that map_Kd names, as it is written; empty: none
   bool is_map_alone = false;  ///< no Kd stands beside the map, or a black one: the albedo is white where the map is had
 };
 

@@ -17,34 +17,28 @@ struct KeywordEntry {
   MtlKeyword keyword;
 };
 
-constexpr KeywordEntry kKeywords[] = {{"newmtl", MtlKeyword::newmtl},
-                                      {"Kd", MtlKeyword::diffuse},
-                                      {"Ks", MtlKeyword::specular},
-                                      {"Ke", MtlKeyword::emission},
-                                      {"Ns", MtlKeyword::shininess},
-                                      {"Ni", MtlKeyword::refractive_index},
-                                      {"d", MtlKeyword::dissolve},
-                                      {"Tr", MtlKeyword::transparency},
-                                      {"illum", MtlKeyword::illumination},
-                                      {"Pr", MtlKeyword::roughness},
-                                      {"Pm", MtlKeyword::metallic},
-                                      {"map_Kd", MtlKeyword::albedo_map}};
+constexpr KeywordEntry kKeywords[] = {
+    {"newmtl", MtlKeyword::newmtl}, {"Kd", MtlKeyword::diffuse},      {"Ks", MtlKeyword::specular},
+    {"Ke", MtlKeyword::emission},   {"Ns", MtlKeyword::shininess},    {"Ni", MtlKeyword::refractive_index},
+    {"d", MtlKeyword::dissolve},    {"Tr", MtlKeyword::transparency}, {"illum", MtlKeyword::illumination},
+    {"Pr", MtlKeyword::roughness},  {"Pm", MtlKeyword::metallic},     {"map_Kd", MtlKeyword::albedo_map}};
 
 /// Textures that are not shown.
 constexpr std::string_view kOtherMaps[] = {
-    "map_Ka",    "map_Ks",     "map_Ke",  "map_Ns",  "map_d",       "map_Tr",       "map_Tf",       "map_Ni", "map_Pr",
-    "map_Pm",    "map_Ps",     "map_Pc",  "map_Pcr", "map_RMA",     "map_ORM",      "map_AO",       "map_Kn", "bump",
-    "map_bump",  "disp",       "map_disp", "decal",  "map_decal",   "refl",         "map_refl",     "norm",   "map_norm",
-    "map_aniso", "map_anisor", "map_normal", "map_opacity", "map_emissive", "map_occlusion"};
+    "map_Ka",     "map_Ks",     "map_Ke",      "map_Ns",       "map_d",        "map_Tr",   "map_Tf",
+    "map_Ni",     "map_Pr",     "map_Pm",      "map_Ps",       "map_Pc",       "map_Pcr",  "map_RMA",
+    "map_ORM",    "map_AO",     "map_Kn",      "bump",         "map_bump",     "disp",     "map_disp",
+    "decal",      "map_decal",  "refl",        "map_refl",     "norm",         "map_norm", "map_aniso",
+    "map_anisor", "map_normal", "map_opacity", "map_emissive", "map_occlusion"};
 
 /// Properties that no material of Kerf has.
 constexpr std::string_view kPassedOver[] = {"Ka",  "Tf",    "Km",     "Kt",        "Ps",     "Pc",
                                             "Pcr", "aniso", "anisor", "sharpness", "map_aat"};
 
-constexpr MtlMapOption kMapOptions[] = {{"-blendu", 1, 1},  {"-blendv", 1, 1}, {"-bm", 1, 1},     {"-boost", 1, 1},
-                                        {"-cc", 1, 1},      {"-clamp", 1, 1},  {"-imfchan", 1, 1}, {"-mm", 2, 2},
-                                        {"-o", 1, 3},       {"-s", 1, 3},      {"-t", 1, 3},      {"-texres", 1, 1},
-                                        {"-type", 1, 1},    {"-colorspace", 1, 1}};
+constexpr MtlMapOption kMapOptions[] = {{"-blendu", 1, 1}, {"-blendv", 1, 1},    {"-bm", 1, 1},      {"-boost", 1, 1},
+                                        {"-cc", 1, 1},     {"-clamp", 1, 1},     {"-imfchan", 1, 1}, {"-mm", 2, 2},
+                                        {"-o", 1, 3},      {"-s", 1, 3},         {"-t", 1, 3},       {"-texres", 1, 1},
+                                        {"-type", 1, 1},   {"-colorspace", 1, 1}};
 
 char lower(char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 

@@ -70,7 +70,9 @@ void ObjCursor::fail_end(std::string_view what) {
 std::string obj_name(std::string_view text) {
   std::string name;
   for (size_t i = 0; i < text.size(); ++i) {
-    const size_t newline = text.substr(i).starts_with("\\\n") ? i + 1 : text.substr(i).starts_with("\\\r\n") ? i + 2 : 0;
+    const size_t newline = text.substr(i).starts_with("\\\n")     ? i + 1
+                           : text.substr(i).starts_with("\\\r\n") ? i + 2
+                                                                  : 0;
     name += newline == 0 ? text[i] : ' ';
     if (newline != 0) i = newline;
   }

@@ -29,15 +29,19 @@ struct Keyword {
   PassedOver kind;
 };
 
-constexpr Keyword kPassedOver[] = {
-    {"g", kSilent},          {"s", kSilent},         {"o", kSilent},        {"mg", kSilent},        {"l", kLines},
-    {"p", kLines},           {"vp", kSilent},        {"cstype", kSilent},   {"deg", kSilent},       {"bmat", kSilent},
-    {"step", kSilent},       {"curv", kFreeForm},    {"curv2", kFreeForm},  {"surf", kFreeForm},    {"parm", kSilent},
-    {"trim", kSilent},       {"hole", kSilent},      {"scrv", kSilent},     {"sp", kSilent},        {"end", kSilent},
-    {"con", kSilent},        {"bevel", kSilent},     {"c_interp", kSilent}, {"d_interp", kSilent},  {"lod", kSilent},
-    {"shadow_obj", kSilent}, {"trace_obj", kSilent}, {"ctech", kSilent},    {"stech", kSilent},     {"res", kSilent},
-    {"bsp", kFreeForm},      {"bzp", kFreeForm},     {"cdc", kFreeForm},    {"cdp", kFreeForm},     {"call", kCommands},
-    {"csh", kCommands},      {"maplib", kTextureMaps}, {"usemap", kTextureMaps}};
+constexpr Keyword kPassedOver[] = {{"g", kSilent},           {"s", kSilent},          {"o", kSilent},
+                                   {"mg", kSilent},          {"l", kLines},           {"p", kLines},
+                                   {"vp", kSilent},          {"cstype", kSilent},     {"deg", kSilent},
+                                   {"bmat", kSilent},        {"step", kSilent},       {"curv", kFreeForm},
+                                   {"curv2", kFreeForm},     {"surf", kFreeForm},     {"parm", kSilent},
+                                   {"trim", kSilent},        {"hole", kSilent},       {"scrv", kSilent},
+                                   {"sp", kSilent},          {"end", kSilent},        {"con", kSilent},
+                                   {"bevel", kSilent},       {"c_interp", kSilent},   {"d_interp", kSilent},
+                                   {"lod", kSilent},         {"shadow_obj", kSilent}, {"trace_obj", kSilent},
+                                   {"ctech", kSilent},       {"stech", kSilent},      {"res", kSilent},
+                                   {"bsp", kFreeForm},       {"bzp", kFreeForm},      {"cdc", kFreeForm},
+                                   {"cdp", kFreeForm},       {"call", kCommands},     {"csh", kCommands},
+                                   {"maplib", kTextureMaps}, {"usemap", kTextureMaps}};
 
 [[noreturn]] void fail_keyword(std::string_view word) {
   std::vector<std::string_view> menu = {"v", "vt", "vn", "f", "usemtl", "mtllib"};
@@ -108,7 +112,8 @@ class ChunkReader {
   /// The place of the next element; both passes count alike, but a mistake in that must not write anywhere else.
   template <class T>
   T& place(std::vector<T>& elements, uint64_t& next, uint64_t end) {
-    if (next >= end) throw ObjFault{cursor_.position(), "was counted otherwise than it is read; this is a fault of Kerf"};
+    if (next >= end)
+      throw ObjFault{cursor_.position(), "was counted otherwise than it is read; this is a fault of Kerf"};
     return elements[next++];
   }
 
@@ -122,8 +127,8 @@ class ChunkReader {
     int count = 0;  // of a weight, a colour, or both
     for (; !cursor_.ends(); ++count) cursor_.number("a number of a vertex");
     if (count == 2 || count > 4) {
-      throw ObjFault{more, fmt::format("a vertex has {} numbers; 3 were expected, and maybe a weight and a colour",
-                                       count + 3)};
+      throw ObjFault{
+          more, fmt::format("a vertex has {} numbers; 3 were expected, and maybe a weight and a colour", count + 3)};
     }
   }
 
@@ -156,8 +161,8 @@ class ChunkReader {
       previous = corner;
     }
     if (corners < 3) {
-      throw ObjFault{statement, fmt::format("a face has {} corner{}; at least 3 were expected", corners,
-                                            corners == 1 ? "" : "s")};
+      throw ObjFault{statement,
+                     fmt::format("a face has {} corner{}; at least 3 were expected", corners, corners == 1 ? "" : "s")};
     }
   }
 
@@ -231,8 +236,8 @@ class ChunkReader {
   ObjCursor cursor_;
   const ObjCounts& total_;
   Mesh& mesh_;
-  ObjCounts next_;  // where the next of each goes
-  ObjCounts end_;   // where the next chunk's begin
+  ObjCounts next_;              // where the next of each goes
+  ObjCounts end_;               // where the next chunk's begin
   const char* word_ = nullptr;  // the corner that is being read
   uint32_t passed_over_ = 0;
 };

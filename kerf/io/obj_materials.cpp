@@ -19,7 +19,7 @@
 namespace kerf {
 namespace {
 
-using std::filesystem::path;
+using std::filesystem::path;  // brings std::quoted() along, which is not ours
 
 /// The file that is named in another one, relative to its folder, with slashes of either kind; or else the file of this
 /// name in the folder itself, as models are moved without the folders that they were made in. Empty where there is
@@ -61,8 +61,16 @@ class Libraries {
   }
 
   /// Whether every material there is has been loaded.
-  bool complete() const { return loaded_.size() > 0 && missing_.empty(); }
+  bool complete() const { return !loaded_.empty() && missing_.empty(); }
   bool none() const { return loaded_.empty() && missing_.empty(); }
+
+  /// Says which materials stand in more than one library.
+  void note_doubles() {
+    if (doubles_ == 0) return;
+    const std::string more = doubles_ == 1 ? "" : fmt::format(" and {} more", doubles_ - 1);
+    notes_.push_back(fmt::format("the first of several material libraries counts for the material {}{}",
+                                 kerf::quoted(first_double_), more));
+  }
 
   std::string_view nearest(const std::string& name) const {
     std::vector<std::string_view> names;
@@ -75,7 +83,8 @@ class Libraries {
   void load_one(const std::string& name) {
     if (const std::string found = find_beside(folder_, name); !found.empty()) return load_file(found);
     if (!missing_.insert(name).second) return;
-    notes_.push_back(fmt::format("the material library {} was not found; default materials are used", quoted(name)));
+    notes_.push_back(
+        fmt::format("the material library {} was not found; default materials are used", kerf::quoted(name)));
   }
 
   void load_file(const std::string& file) {
@@ -84,7 +93,7 @@ class Libraries {
     for (MtlMaterial& made : library.materials) {
       const std::string name = made.material.name;
       if (materials_.try_emplace(name, FoundMaterial{std::move(made), path(file).parent_path()}).second) continue;
-      note(fmt::format("the material {} stands in two libraries; the first is used", quoted(name)));
+      if (doubles_++ == 0) first_double_ = name;
     }
     for (const std::string& sentence : library.notes) note(sentence);
   }
@@ -97,6 +106,8 @@ class Libraries {
   std::vector<std::string>& notes_;
   std::unordered_map<std::string, FoundMaterial> materials_;
   std::unordered_set<std::string> loaded_, missing_;
+  std::string first_double_;
+  size_t doubles_ = 0;
 };
 
 /// The textures of a model, each file once.
@@ -110,7 +121,7 @@ class Textures {
     const auto [entry, is_new] = numbers_.try_emplace(file.empty() ? name : file, kNoTexture);
     if (!is_new) return entry->second;
     if (file.empty()) {
-      notes_.push_back(fmt::format("the texture {} was not found", quoted(name)));
+      notes_.push_back(fmt::format("the texture {} was not found", kerf::quoted(name)));
     } else if (std::optional<Texture> texture = read(file)) {
       entry->second = static_cast<uint32_t>(textures_.size());
       textures_.push_back(std::move(*texture));
@@ -124,7 +135,7 @@ class Textures {
     const MappedFile mapped(file);
     if (!is_texture(mapped.bytes(), file)) {
       notes_.push_back(fmt::format("the texture {} is not shown: it is not a PNG, JPEG, TGA or BMP",
-                                   quoted(path(file).filename().string())));
+                                   kerf::quoted(path(file).filename().string())));
       return std::nullopt;
     }
     return decode_texture(mapped.bytes(), file);
@@ -200,6 +211,7 @@ void add_obj_materials(std::span<const char> text, std::span<const ObjChunk> chu
   for (const ObjChunk& chunk : chunks) {
     for (const ObjName& library : chunk.libraries) libraries.load(obj_name(library.name));
   }
+  libraries.note_doubles();
   const std::vector<MaterialUse> uses = material_uses(chunks);
   if (uses.empty()) return;
   if (libraries.none()) model.notes.emplace_back("it names materials, but no library (mtllib); default ones are used");
@@ -211,13 +223,14 @@ void add_obj_materials(std::span<const char> text, std::span<const ObjChunk> chu
   for (const MaterialUse& use : uses) {
     if (!use.name.empty() && libraries.complete() && libraries.find(use.name) == nullptr) {
       const std::string_view nearest = libraries.nearest(use.name);
-      throw obj_error(text, name,
-                      {use.at, fmt::format("no material library has the material {}{}", quoted(use.name),
-                                           nearest.empty() ? "" : fmt::format("; did you mean {}?", quoted(nearest)))});
+      throw obj_error(
+          text, name,
+          {use.at, fmt::format("no material library has the material {}{}", kerf::quoted(use.name),
+                               nearest.empty() ? "" : fmt::format("; did you mean {}?", kerf::quoted(nearest)))});
     }
     if (use.begin == use.end) continue;
-    std::fill(materials.begin() + static_cast<ptrdiff_t>(use.begin), materials.begin() + static_cast<ptrdiff_t>(use.end),
-              used.number(use.name));
+    std::fill(materials.begin() + static_cast<ptrdiff_t>(use.begin),
+              materials.begin() + static_cast<ptrdiff_t>(use.end), used.number(use.name));
   }
 }
 

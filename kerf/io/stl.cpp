@@ -56,15 +56,16 @@ Mesh read_binary(std::span<const char> bytes, const std::string& name) {
 [[noreturn]] void fail_binary(std::span<const char> bytes, const std::string& name) {
   const std::string place = fmt::format("{}, byte {}", name, bytes.size());
   if (bytes.size() < kHeadSize) {
-    throw Error(ErrorCode::file, place,
-                fmt::format("is no STL: it does not begin with 'solid', and a binary one has at least {} bytes",
-                            kHeadSize));
+    throw Error(
+        ErrorCode::file, place,
+        fmt::format("is no STL: it does not begin with 'solid', and a binary one has at least {} bytes", kHeadSize));
   }
   const uint64_t facets = stated_facets(bytes);
-  throw Error(ErrorCode::file, place,
-              fmt::format("is no STL, or a damaged one: it does not begin with 'solid', and as a binary one it states {} "
-                          "triangles, which take {} bytes, but the file has {}",
-                          facets, kHeadSize + facets * kFacetSize, bytes.size()));
+  throw Error(
+      ErrorCode::file, place,
+      fmt::format("is no STL, or a damaged one: it does not begin with 'solid', and as a binary one it states {} "
+                  "triangles, which take {} bytes, but the file has {}",
+                  facets, kHeadSize + facets * kFacetSize, bytes.size()));
 }
 
 // --- ascii ----------------------------------------------------------------------------------------------------------

@@ -16,8 +16,8 @@ namespace kerf {
 /// Throws Error (file) with the path as place where the file cannot be read, and else as parse_stl() does.
 Mesh read_stl(const std::string& path);
 
-/// Reads an STL out of memory; `name` stands for it in errors. Throws Error (file) with the place "NAME:LINE" for ascii,
-/// "NAME, byte OFFSET" for binary, and Error (too_large) for more different vertices than 32 bits count.
+/// Reads an STL out of memory; `name` stands for it in errors. Throws Error (file) with the place "NAME:LINE" for
+/// ascii, "NAME, byte OFFSET" for binary, and Error (too_large) for more different vertices than 32 bits count.
 Mesh parse_stl(std::span<const char> bytes, const std::string& name);
 
 }  // namespace kerf

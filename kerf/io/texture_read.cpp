@@ -63,8 +63,8 @@ Texture decode_texture(std::span<const char> bytes, const std::string& name) {
   if (static_cast<uint64_t>(width) * static_cast<uint64_t>(height) > kMostPixels) {
     fail(fmt::format("has {} x {} pixels; at most 2^28 are read", width, height));
   }
-  const std::unique_ptr<stbi_uc, void (*)(void*)> rgb(
-      stbi_load_from_memory(data, size, &width, &height, &channels, 3), stbi_image_free);
+  const std::unique_ptr<stbi_uc, void (*)(void*)> rgb(stbi_load_from_memory(data, size, &width, &height, &channels, 3),
+                                                      stbi_image_free);
   if (rgb == nullptr) fail(fmt::format("cannot be decoded ({})", stbi_failure_reason()));
   Texture texture{static_cast<uint32_t>(width), static_cast<uint32_t>(height), {}};
   texture.rgb.assign(rgb.get(), rgb.get() + size_t{texture.width} * texture.height * 3);

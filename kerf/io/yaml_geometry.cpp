@@ -22,14 +22,15 @@ constexpr std::string_view kFutureTypes[] = {"displaced_sphere", "sdf_primitive"
 
 class GeometryReader {
  public:
-  GeometryReader(const YamlMaterials& materials, SceneDescription& scene, YamlModels& models, YamlNotes& notes)
+  GeometryReader(const YamlMaterials& materials, SceneDescription& scene, YamlModels& models, Notes& notes)
       : materials_(materials), scene_(scene), models_(models), notes_(notes) {}
 
   void read(const YamlField& item) {
     const std::optional<YamlField> type = peek(item, "type");
     if (!type) item.node().fail("an item of the geometry needs 'type'");
     const std::string word = type->text();
-    const auto* kind = std::find_if(std::begin(kKinds), std::end(kKinds), [&](const Kind& k) { return k.name == word; });
+    const auto* kind =
+        std::find_if(std::begin(kKinds), std::end(kKinds), [&](const Kind& k) { return k.name == word; });
     if (kind == std::end(kKinds)) refuse_type(*type, word);
     const YamlMap map(item, kind->keys, std::string(kind->noun));
     SceneObject object;
@@ -167,7 +168,7 @@ class GeometryReader {
   const YamlMaterials& materials_;
   SceneDescription& scene_;
   YamlModels& models_;
-  YamlNotes& notes_;
+  Notes& notes_;
   bool last_is_triangles_ = false;  // the last object is a mesh of triangles of this section
 };
 
@@ -181,7 +182,7 @@ const GeometryReader::Kind GeometryReader::kKinds[4] = {
 }  // namespace
 
 void read_yaml_geometry(const YamlField& section, const YamlMaterials& materials, SceneDescription& scene,
-                        YamlModels& models, YamlNotes& notes) {
+                        YamlModels& models, Notes& notes) {
   GeometryReader reader(materials, scene, models, notes);
   for (const YamlField& item : items_of(section)) reader.read(item);
 }

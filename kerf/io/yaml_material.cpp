@@ -10,16 +10,9 @@
 namespace kerf {
 namespace {
 
-constexpr std::string_view kKeys[] = {"name",
-                                      "type",
-                                      "albedo",
-                                      "emission",
-                                      "color",
-                                      "emission_intensity",
-                                      "roughness",
-                                      "metallic",
-                                      "refractive_index",
-                                      "transmission"};
+constexpr std::string_view kKeys[] = {
+    "name",      "type",     "albedo",           "emission",    "color", "emission_intensity",
+    "roughness", "metallic", "refractive_index", "transmission"};
 
 struct Synonym {
   std::string_view word;
@@ -79,7 +72,7 @@ void refuse_future_keys(const YamlNode& map) {
 /// Reads one material, its type known.
 class MaterialReader {
  public:
-  MaterialReader(const YamlField& item, MaterialType type, YamlNotes& notes)
+  MaterialReader(const YamlField& item, MaterialType type, Notes& notes)
       : map_(item, kKeys, noun_of(type)), type_(type), notes_(notes) {}
 
   Material read() {
@@ -145,22 +138,23 @@ class MaterialReader {
     const Vec3d radiance = shade * (intensity ? intensity->number(kAtLeastZero) : 1);
     if (largest(radiance) > kMaxCoordinate) intensity->fail("times 'color' it is greater than 2^120 (1.3e36)");
     if (!intensity && type_ != MaterialType::light) {
-      notes_.add(fmt::format("'color' without 'emission_intensity' makes {} shine with intensity 1; what it reflects is "
-                             "its 'albedo'",
-                             map_.noun()),
-                 map_.key_node("color").place());
+      notes_.add(
+          fmt::format("'color' without 'emission_intensity' makes {} shine with intensity 1; what it reflects is "
+                      "its 'albedo'",
+                      map_.noun()),
+          map_.key_node("color").place());
     }
     return to_float(radiance);
   }
 
   YamlMap map_;
   MaterialType type_;
-  YamlNotes& notes_;
+  Notes& notes_;
 };
 
 }  // namespace
 
-void YamlMaterials::read(const YamlField& section, YamlNotes& notes) {
+void YamlMaterials::read(const YamlField& section, Notes& notes) {
   for (const YamlField& item : items_of(section)) {
     const std::optional<YamlField> type = peek(item, "type");
     refuse_future_keys(item.node());
@@ -171,8 +165,8 @@ void YamlMaterials::read(const YamlField& section, YamlNotes& notes) {
     const Known known{static_cast<uint32_t>(materials_.size()), name.node().line()};
     const auto [first, is_new] = known_.emplace(material.name, known);
     if (!is_new) {
-      name.node().fail(fmt::format("a second material {}; the first is in line {}", quoted(material.name),
-                                   first->second.line));
+      name.node().fail(
+          fmt::format("a second material {}; the first is in line {}", quoted(material.name), first->second.line));
     }
     materials_.push_back(std::move(material));
   }

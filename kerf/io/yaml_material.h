@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "kerf/io/material.h"
+#include "kerf/io/notes.h"
 #include "kerf/io/yaml_node.h"
-#include "kerf/io/yaml_notes.h"
 
 namespace kerf {
 
@@ -15,7 +15,7 @@ namespace kerf {
 class YamlMaterials {
  public:
   /// Reads the section `materials`. Throws Error (file); keys that mean nothing for a type become notes.
-  void read(const YamlField& section, YamlNotes& notes);
+  void read(const YamlField& section, Notes& notes);
 
   /// The number of the material that is named. Throws Error (file) with the nearest right name.
   uint32_t number_of(const YamlField& name) const;

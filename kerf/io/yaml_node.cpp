@@ -135,7 +135,8 @@ YamlMap::YamlMap(const YamlField& map, std::span<const std::string_view> keys, s
   if (node_.kind() != YamlKind::map) map.fail_type("a map");
   for (size_t i = 0; i < node_.size(); ++i) {
     const YamlNode key = node_.key(i);
-    if (key.kind() != YamlKind::scalar) key.fail(fmt::format("expected a key of {}, found {}", noun_, key.description()));
+    if (key.kind() != YamlKind::scalar)
+      key.fail(fmt::format("expected a key of {}, found {}", noun_, key.description()));
     if (key.text() == "<<" && !key.is_quoted()) key.fail("merge keys ('<<') are not supported");
     const auto known = std::find(keys_.begin(), keys_.end(), key.text());
     if (known == keys_.end()) {

@@ -18,7 +18,7 @@ enum class YamlKind : uint8_t { null, scalar, sequence, map };
 struct YamlTree {
   struct Node {
     YamlKind kind = YamlKind::null;
-    bool is_quoted = false;        ///< of a scalar
+    bool is_quoted = false;         ///< of a scalar
     uint32_t begin = 0, count = 0;  ///< of a scalar: bytes of `text`; of the others: entries of `uses`
   };
   /// A node where it is used, or its alias. Lines and columns count from 1, columns in bytes.
@@ -111,7 +111,8 @@ class YamlField {
 /// A map of known keys. `noun` is what it describes, such as "a sphere".
 class YamlMap {
  public:
-  /// Throws Error (file) if it is no map, or has a key that is no text, a merge key, one that is unknown or there twice.
+  /// Throws Error (file) if it is no map, or has a key that is no text, a merge key, one that is unknown or there
+  /// twice.
   YamlMap(const YamlField& map, std::span<const std::string_view> keys, std::string noun);
 
   std::optional<YamlField> find(std::string_view key) const;

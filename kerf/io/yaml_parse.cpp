@@ -81,9 +81,9 @@ class TreeBuilder : public YAML::EventHandler {
     refuse_tag(mark, tag);
     if (tag == "!") last_quoted_ = static_cast<size_t>(mark.pos);
     YamlTree::Use use = place_of(mark);
-    use.node = add_node({YamlKind::scalar, tag == "!", static_cast<uint32_t>(tree_.text.size()),
-                         static_cast<uint32_t>(value.size())},
-                        anchor);
+    use.node = add_node(
+        {YamlKind::scalar, tag == "!", static_cast<uint32_t>(tree_.text.size()), static_cast<uint32_t>(value.size())},
+        anchor);
     tree_.text += value;
     add(use);
   }
@@ -228,7 +228,8 @@ std::string_view line_of(std::string_view text, size_t number) {
   if (error.mark.is_null()) throw Error(ErrorCode::file, name, sentence);
   const std::string_view line = line_of(text, static_cast<size_t>(error.mark.line));
   const std::string_view indentation = line.substr(0, line.find_first_not_of(" \t"));
-  if (indentation.find('\t') != std::string_view::npos) sentence += "; the line begins with a tab, where only spaces count";
+  if (indentation.find('\t') != std::string_view::npos)
+    sentence += "; the line begins with a tab, where only spaces count";
   fail(name, static_cast<size_t>(error.mark.line) + 1, static_cast<size_t>(error.mark.column) + 1, sentence);
 }
 

@@ -4,11 +4,11 @@
 #include <string_view>
 
 #include "kerf/io/mapped_file.h"
+#include "kerf/io/notes.h"
 #include "kerf/io/yaml_geometry.h"
 #include "kerf/io/yaml_material.h"
 #include "kerf/io/yaml_models.h"
 #include "kerf/io/yaml_node.h"
-#include "kerf/io/yaml_notes.h"
 #include "kerf/io/yaml_parse.h"
 #include "kerf/io/yaml_settings.h"
 
@@ -25,7 +25,7 @@ SceneDescription parse(std::string_view text, const std::string& name, const std
   const YamlMap top({YamlNode(tree, tree.root), "the scene file"}, kKeys, "the scene file");
 
   SceneDescription scene;
-  YamlNotes notes;
+  Notes notes;
   YamlMaterials materials;
   YamlModels models(folder);
   read_yaml_settings(top, scene, notes);

@@ -6,17 +6,11 @@ namespace kerf {
 namespace {
 
 constexpr std::string_view kCameraKeys[] = {"position", "look_at", "up", "fov"};
-constexpr std::string_view kSettingsKeys[] = {"background_color",  "background_intensity", "ambient_light", "use_bvh",
-                                              "adaptive_sampling", "structure"};
-constexpr std::string_view kSceneKeys[] = {"name",
-                                           "description",
-                                           "camera",
-                                           "background_color",
-                                           "background_intensity",
-                                           "ambient_light",
-                                           "use_bvh",
-                                           "adaptive_sampling",
-                                           "structure"};
+constexpr std::string_view kSettingsKeys[] = {"background_color", "background_intensity", "ambient_light",
+                                              "use_bvh",          "adaptive_sampling",    "structure"};
+constexpr std::string_view kSceneKeys[] = {
+    "name",    "description",       "camera",   "background_color", "background_intensity", "ambient_light",
+    "use_bvh", "adaptive_sampling", "structure"};
 
 double length(Vec3d v) { return std::sqrt(dot(v, v)); }
 
@@ -81,7 +75,7 @@ class Settings {
   const std::optional<YamlMap>& scene_;
 };
 
-void read_settings(const Settings& settings, SceneDescription& scene, YamlNotes& notes) {
+void read_settings(const Settings& settings, SceneDescription& scene, Notes& notes) {
   Background& background = scene.background;
   if (const auto field = settings.find("background_color")) background.color = field->single_vector(kAtLeastZero);
   if (const auto field = settings.find("background_intensity")) background.intensity = field->single(kAtLeastZero);
@@ -110,7 +104,7 @@ std::string free_text(const YamlField& field) {
 
 }  // namespace
 
-void read_yaml_settings(const YamlMap& top, SceneDescription& scene, YamlNotes& notes) {
+void read_yaml_settings(const YamlMap& top, SceneDescription& scene, Notes& notes) {
   const std::optional<YamlMap> settings = section_of(top, "settings", kSettingsKeys);
   const std::optional<YamlMap> block = section_of(top, "scene", kSceneKeys);
   std::optional<YamlField> camera = top.find("camera");

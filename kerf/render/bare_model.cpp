@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 #include "kerf/geometry/geometry.h"
 #include "kerf/render/camera.h"
+#include "kerf/render/color.h"
 #include "kerf/render/frame.h"
+#include "kerf/render/path_tracer.h"
 #include "kerf/render/render_scene.h"
 
 namespace kerf {
@@ -29,20 +34,14 @@ void light_from_outside(SceneDescription& scene, const Camera& camera, Vec3d cen
   const Vec3d right = normalized(cross(view, up));
   const Vec3d key = normalized(up * 1.1 - right * 0.9 - view * 0.6), fill = normalized(up * 0.3 + right - view * 0.7);
   const double distance = 3 * size;
-  add_lamp(scene, center + key * distance, 0.25 * distance, {22, 20, 17});
-  add_lamp(scene, center + fill * distance, 0.3 * distance, {2.0F, 2.3F, 2.8F});
+  add_lamp(scene, center + key * distance, 0.25 * distance, {10, 9.2F, 8});
+  add_lamp(scene, center + fill * distance, 0.3 * distance, {0.7F, 0.8F, 1});
 }
 
 /// Lamps in the free space along the middle of the view, each half way up to what is above it.
-void light_from_within(SceneDescription& scene, const Camera& camera, double size) {
+void place_lamps_within(SceneDescription& scene, const Camera& camera, double size) {
   // A handful of rays do not pay for a tree.
-  Scene probe;
-  for (const SceneObject& object : scene.objects) {
-    const auto* mesh = std::get_if<Mesh>(&object.shape);
-    if (mesh == nullptr) continue;
-    probe.add(TriangleMesh{std::span(mesh->vertices), std::span(mesh->triangles)});
-  }
-  probe.build({.structure = "brute_force", .skip_invalid = true});
+  const Scene probe = build_scene(scene, {.structure = "brute_force", .skip_invalid = true});
   const auto free_way = [&](Vec3d from, Vec3d direction) {
     Ray ray;
     ray.origin = to_float(from);
@@ -55,12 +54,40 @@ void light_from_within(SceneDescription& scene, const Camera& camera, double siz
   for (const double share : {0.05, 0.4, 0.75}) {
     const Vec3d below = camera.eye + view * (depth * share);
     const double height = std::min(free_way(below, up), depth);
-    const Vec3d center = below + up * (0.5 * height);
-    const double radius = 0.02 * depth;
-    // As bright as lights a white wall with radiance 1 at a quarter of the depth.
-    const double reach = 0.25 * depth / radius;
-    const auto radiance = static_cast<float>(reach * reach);
-    add_lamp(scene, center, radius, {radiance, 0.93F * radiance, 0.82F * radiance});
+    add_lamp(scene, below + up * (0.5 * height), 0.02 * depth, {1, 0.93F, 0.82F});
+  }
+}
+
+/// The mean luminance of a small picture, its brightest tenth left out: lamps near a wall are not what a picture is of.
+float typical_luminance(const RenderScene& scene, const Camera& camera) {
+  PathTracerOptions options;
+  options.width = 48;
+  options.height = 32;
+  options.samples = 8;
+  const Image picture = render_paths(scene, camera, options).radiance;
+  std::vector<float> all;
+  for (size_t i = 0; i < picture.pixels.size(); i += 3) {
+    all.push_back(luminance({picture.pixels[i], picture.pixels[i + 1], picture.pixels[i + 2]}));
+  }
+  std::sort(all.begin(), all.end());
+  all.resize(all.size() * 9 / 10);
+  return std::accumulate(all.begin(), all.end(), 0.0F) / static_cast<float>(all.size());
+}
+
+/// As light_from_outside, but as bright as a picture of the view needs: what a room swallows cannot be told beforehand.
+void light_from_within(SceneDescription& scene, const Camera& camera, const BuildOptions& build, double size) {
+  const Background sky = scene.background;
+  const size_t first = scene.materials.size();
+  place_lamps_within(scene, camera, size);
+  scene.background = {{0, 0, 0}, 0, 0};
+  RenderScene lit(std::move(scene), build);
+  const float luminance = typical_luminance(lit, camera);
+  scene = lit.take_description();
+  scene.background = sky;
+  constexpr float kWanted = 0.3F;
+  if (!(luminance > 0)) return;
+  for (size_t i = first; i < scene.materials.size(); ++i) {
+    scene.materials[i].emission = scene.materials[i].emission * (kWanted / luminance);
   }
 }
 
@@ -84,8 +111,8 @@ Box3f bounds_of(const SceneDescription& scene) {
   return bounds;
 }
 
-void add_light(SceneDescription& scene, const Camera& camera) {
-  scene.background = {{0.75F, 0.85F, 1.0F}, 0.9F, 0};
+void add_light(SceneDescription& scene, const Camera& camera, const BuildOptions& build) {
+  scene.background = {{0.62F, 0.76F, 0.95F}, 0.7F, 0};
   scene.is_lit = true;
   const Box3f bounds = bounds_of(scene);
   if (bounds.is_empty()) return;
@@ -94,7 +121,7 @@ void add_light(SceneDescription& scene, const Camera& camera) {
   if (!(size > 0)) return;
   const bool is_within = min(camera.eye, lower) == lower && max(camera.eye, upper) == upper;
   if (is_within) {
-    light_from_within(scene, camera, size);
+    light_from_within(scene, camera, build, size);
   } else {
     light_from_outside(scene, camera, (lower + upper) * 0.5, size);
   }

@@ -44,7 +44,8 @@ inline ConductorIndex conductor_index(float reflectance) {
   return {n, std::sqrt(std::max(0.0F, k2))};
 }
 
-/// Of each colour. Where the reflectance straight on is 0, the index is that of the air around and nothing is reflected.
+/// Of each colour. Where the reflectance straight on is 0, the index is that of the air around and nothing is
+/// reflected.
 inline Vec3f conductor_reflectance(float cosine, Vec3f straight_on) {
   Vec3f result;
   for (uint32_t i = 0; i < 3; ++i) {

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <string>
-#include <vector>
+#include <utility>
 
 #include "kerf/io/scene_description.h"
 #include "kerf/render/surface.h"
@@ -23,6 +22,8 @@ class RenderScene {
 
   const SceneDescription& description() const { return description_; }
   const Scene& scene() const { return scene_; }
+  /// Gives the description back; the scene is not to be used any more.
+  SceneDescription take_description() { return std::move(description_); }
 
   const Material& material(uint32_t object, uint32_t primitive) const;
   /// The point that a ray of this scene hit, and its material.

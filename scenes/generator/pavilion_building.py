@@ -8,9 +8,9 @@ from generator.vectors import add, along, mix, subtract, unit
 LENGTH, WIDTH = 24.0, 11.0
 LEFT_NEAR, RIGHT_NEAR, LEFT_FAR, RIGHT_FAR = 3.9, 7.4, 7.6, 3.5  # heights of the roof over the corners of the hall
 DECK = 2.8  # height of the gallery
-DECK_NEAR, DECK_RIGHT = 15.0, 7.6  # where it begins, and its edge toward the lattice
+DECK_NEAR, DECK_RIGHT = 15.0, 8.1  # where it begins, and its edge toward the lattice
 RAMP_NEAR = 3.2  # where the ramp to the gallery begins
-STAIR = (13.72, 0.0, 6.3)  # axis of the spiral stair
+STAIR = (9.3, 0.0, 6.8)  # axis of the spiral stair
 
 
 def roof(x, z, below=0.0):
@@ -38,7 +38,7 @@ def _roof(scene, random):
         timbers[0].beam(roof(-1.7, z, 0.08), roof(LENGTH + 1.7, z, 0.08), 0.08, 0.18)
     for x in spread(0.0, LENGTH, 7):  # main beams across, in pairs
         for side in (-0.14, 0.14):
-            timbers[1].beam(roof(x + side, -0.7, 0.42), roof(x + side, WIDTH + 0.7, 0.42), 0.1, 0.5)
+            timbers[0].beam(roof(x + side, -0.7, 0.42), roof(x + side, WIDTH + 0.7, 0.42), 0.1, 0.5)
     steel = scene.mesh("steel")
     bays = spread(0.0, LENGTH, 7)
     for x0, x1 in zip(bays, bays[1:]):  # wind bracing: rods from corner to corner of each bay, and half bays
@@ -115,12 +115,24 @@ def _gallery(scene):
     concrete = scene.mesh("concrete")
     concrete.box((DECK_NEAR, DECK - 0.26, 0), (end, DECK - 0.05, DECK_RIGHT))
     scene.mesh("oak").box((DECK_NEAR + 0.02, DECK - 0.05, 0.02), (end, DECK, DECK_RIGHT - 0.02))
-    x, _, z = STAIR
-    concrete.box((x, DECK - 0.2, z), (DECK_NEAR, DECK - 0.05, z + 1.27))  # landing of the stair
-    scene.mesh("oak").box((x, DECK - 0.05, z), (DECK_NEAR + 0.02, DECK, z + 1.27))
-    railing(scene, (DECK_NEAR + 0.06, DECK, 1.65), (DECK_NEAR + 0.06, DECK, STAIR[2] - 0.05))
-    railing(scene, (x, DECK, z + 1.22), (DECK_NEAR, DECK, z + 1.22))
+    railing(scene, (DECK_NEAR + 0.06, DECK, 1.65), (DECK_NEAR + 0.06, DECK, STAIR[2]))
     railing(scene, (DECK_NEAR, DECK, DECK_RIGHT - 0.06), (end, DECK, DECK_RIGHT - 0.06))
+    _bridge(scene)
+
+
+def _bridge(scene):
+    """From the spiral stair to the gallery."""
+    x, _, z0 = STAIR
+    z1 = DECK_RIGHT
+    for z in (z0 + 0.05, z1 - 0.05):
+        scene.mesh("black").beam((x, DECK - 0.15, z), (DECK_NEAR, DECK - 0.15, z), 0.06, 0.2)
+    boards = 46
+    for i in range(boards):
+        middle = x + (DECK_NEAR - x) * (i + 0.5) / boards
+        scene.mesh("oak").beam((middle, DECK - 0.025, z0), (middle, DECK - 0.025, z1), 0.11, 0.05)
+    railing(scene, (x + 1.3, DECK, z0 + 0.05), (DECK_NEAR + 0.06, DECK, z0 + 0.05))
+    railing(scene, (x, DECK, z1 - 0.05), (DECK_NEAR, DECK, z1 - 0.05))
+    railing(scene, (x + 0.03, DECK, z0 + 0.1), (x + 0.03, DECK, z1 - 0.1))
 
 
 def railing(scene, start, end, height=1.0, cables=8):

@@ -39,13 +39,14 @@ def furnish(scene, random):
 
 
 def _table(scene, random):
-    center = (7.4, 0.0, 4.2)
-    scene.mesh("blue").box((4.7, 0.0, 2.75), (10.1, 0.012, 5.65))
-    top = Placed(scene.mesh("oak_light"), center, 0)
+    """A long table on a rug, with chairs, lamps and what lies on it."""
+    center, degrees = (7.3, 0.0, 3.75), 0
+    scene.mesh("blue").box((4.5, 0.0, 2.3), (10.1, 0.012, 5.2))
+    top = Placed(scene.mesh("oak_light"), center, degrees)
     for k in range(5):
-        z = -0.48 + 0.2 * k
+        z = -0.4 + 0.2 * k
         top.box((-2.1, 0.72, z - 0.098), (2.1, 0.76, z + 0.098))
-    legs = Placed(scene.mesh("black"), center, 0)
+    legs = Placed(scene.mesh("black"), center, degrees)
     for x in (-1.5, 1.5):
         for side in (-1, 1):
             legs.beam((x - 0.25 * side, 0, -0.42), (x + 0.25 * side, 0.72, 0.4), 0.04, 0.04)
@@ -54,11 +55,11 @@ def _table(scene, random):
     colours = ["oak_dark", "ochre", "oak_dark", "oak_dark", "oak_dark", "oak_dark", "ochre", "oak_dark"]
     for i, x in enumerate((-1.5, -0.5, 0.5, 1.5)):
         for side in (-1, 1):
-            foot = add(center, (x + random.uniform(-0.06, 0.06), 0.012, side * random.uniform(0.72, 0.84)))
-            turn = (0 if side > 0 else 180) + random.uniform(-14, 14)
-            _chair(scene, colours[2 * i + (side > 0)], foot, turn)
+            foot = (x + random.uniform(-0.06, 0.06), 0.012, side * random.uniform(0.72, 0.84))
+            turn = degrees + (0 if side > 0 else 180) + random.uniform(-14, 14)
+            _chair(scene, colours[2 * i + (side > 0)], legs.at(foot), turn)
     for x in (-1.35, 0.0, 1.35):
-        _lamp(scene, add(center, (x, 1.62, 0)))
+        _lamp(scene, legs.at((x, 2.1, 0)))
     _tableware(scene, center)
 
 
@@ -123,13 +124,11 @@ class _Middle:
 
 
 def _sculptures(scene):
-    """Plinths: a ball of brass, one of glass, and strings between two crossed arcs."""
-    plaster = scene.mesh("plaster")
-    for (x, z), height in (((4.5, 7.1), 1.0), ((6.0, 7.6), 0.62)):
-        plaster.box((x - 0.23, 0, z - 0.23), (x + 0.23, height, z + 0.23))
-    scene.sphere("glass", (4.5, 1.0 + 0.2, 7.1), 0.2, "On the plinths")
-    scene.sphere("brass", (6.0, 0.62 + 0.27, 7.6), 0.27)
-    _string_sculpture(scene, (10.2, 0.0, 8.6))
+    """A ball of glass on a plinth, one of brass on the floor, and strings between two rings."""
+    scene.mesh("plaster").box((2.97, 0, 6.47), (3.43, 1.0, 6.93))
+    scene.sphere("glass", (3.2, 1.2, 6.7), 0.2, "On the plinth")
+    scene.sphere("brass", (4.6, 0.45, 6.95), 0.45, "On the floor")
+    _string_sculpture(scene, (8.4, 0.0, 9.3))
 
 
 def _string_sculpture(scene, foot):
@@ -138,7 +137,7 @@ def _string_sculpture(scene, foot):
     scene.mesh("plaster").box((x - 0.6, 0, z - 0.6), (x + 0.6, 0.35, z + 0.6))
     count = 96
     low, high = circle((x, 0.4, z), 0.5, count), circle((x, 2.6, z), 0.66, count)
-    strings = scene.mesh("brass")
+    strings = scene.mesh("red")
     for turn in (34, -34):
         strings.strings(low, high[turn:] + high[:turn], 0.003)
     for center, radius in (((x, 0.4, z), 0.5), ((x, 2.6, z), 0.66)):
@@ -191,7 +190,7 @@ def _books(scene, random):
 
 def _plants(scene, random):
     pot, soil = scene.mesh("terracotta"), scene.mesh("joint")
-    for foot, radius, height in (((6.3, 0, 9.8), 0.34, 0.55), ((12.6, 0, 9.9), 0.3, 0.5), ((4.2, 0, 2.25), 0.24, 0.42)):
+    for foot, radius, height in (((5.6, 0, 9.9), 0.34, 0.55), ((12.6, 0, 9.9), 0.3, 0.5), ((3.7, 0, 2.2), 0.24, 0.42)):
         plants.pot(pot, soil, foot, radius, height)
         plants.tuft(scene.mesh("leaf"), random, add(foot, (0, height * 0.9, 0)), 90, 1.5, 0.9, 0.035, pieces=5)
         plants.tuft(scene.mesh("leaf_light"), random, add(foot, (0, height * 0.9, 0)), 50, 1.2, 0.7, 0.03, pieces=5)

@@ -28,6 +28,7 @@ end_header
 0 1 0
 4 0 1 2 3
 """
+QUICK = ["--size", "16x12", "--spp", "2"]
 CAMERA = ["--eye", "0.5,0.5,2", "--look-at", "0.5,0.5,0", "--up", "0,1,0", "--fov", "53.130102354155980"]
 
 
@@ -101,11 +102,11 @@ def test_every_structure_gives_the_same_bytes_for_any_threads(structure):
 
 def test_png_is_written_by_default_beside_the_caller(folder):
     (folder / "elsewhere").mkdir()
-    result = kerf("render", "../square.ply", cwd="elsewhere")
+    result = kerf("render", "../square.ply", *QUICK, cwd="elsewhere")
     assert result.returncode == 0, result.stderr
     assert (folder / "elsewhere" / "square.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
     assert "square.png" in result.stderr and result.stdout == ""
-    assert kerf("render", "square.ply", "--quiet").stderr == ""
+    assert kerf("render", "square.ply", *QUICK, "--quiet").stderr == ""
 
 
 def test_json_says_what_was_done():
@@ -118,25 +119,27 @@ def test_json_says_what_was_done():
     assert scene["primitives"] == 2 and scene["references"] > 2 and scene["sa_max"] == 0.6
     assert scene["references_per_primitive"] == scene["references"] / 2
     assert len(scene["tree_hash"]) == 16
-    plain = json.loads(kerf("render", "square.ply", "-o", "a.png", "--size", "8x8", "--json", "-", "--quiet").stdout)
-    assert plain["scene"]["sa_max"] == "inf" and plain["scene"]["references"] == 2
+    plain = json.loads(kerf("render", "square.ply", "-o", "a.png", *QUICK, "--json", "-", "--quiet").stdout)
+    assert plain["view"] == "beauty" and plain["samples"] == 2 and plain["paths"] == 16 * 12 * 2 <= plain["rays"]
+    assert plain["scene"]["sa_max"] == "inf" and plain["scene"]["references"] == 4, "the square and two lights"
 
 
 def test_list_names_every_entry():
     menu = json.loads(kerf("list", "--json", "-").stdout)
     names = [entry["name"] for entry in menu]
-    assert {entry["kind"] for entry in menu} == {"splitter", "builder", "structure", "view"}
+    assert {entry["kind"] for entry in menu} == {"splitter", "builder", "structure", "view", "material", "format"}
     assert kerf("list", "--quiet", "--threads", "2").returncode == 0
-    for name in ["early_split", "spatial_median", "object_median", "sweep_sah", "binned_sah", "brute_force"]:
+    for name in ["early_split", "spatial_median", "object_median", "sweep_sah", "binned_sah", "brute_force", "beauty",
+                 "glass", ".obj"]:
         assert name in names
     text = kerf("list").stdout
     assert all(name in text for name in names) and "primitive" in text
 
 
 def test_help_of_every_command_has_an_example():
-    for command in [[], ["render"], ["list"]]:
+    for command in [[], ["render"], ["check"], ["list"]]:
         result = kerf(*command, "--help")
-        assert result.returncode == 0 and "Example: kerf" in result.stdout
+        assert result.returncode == 0 and "Example" in result.stdout and "kerf " in result.stdout
     assert kerf("--version").stdout.startswith("kerf 0.")
     assert kerf().returncode == 0
 
@@ -159,6 +162,12 @@ USAGE = [
     (["render", "square.ply", "--eye", "1,1,1", "--look-at", "1,1,1"], "eye and look-at"),
     (["render", "square.ply", "--up", "0,0,0"], "camera"),
     (["render", "square.ply", "--threads", "-1"], "--threads"),
+    (["render", "square.ply", "--spp", "0"], "--spp"),
+    (["render", "square.ply", "--spp", "many"], "--spp"),
+    (["render", "square.ply", "--seed", "-1"], "--seed"),
+    (["render", "square.ply", "--compare", "binned_sh"], "did you mean 'binned_sah'?"),
+    (["chek", "square.ply"], "did you mean 'check'?"),
+    (["check", "square.ply", "--spp", "4"], "--spp"),
 ]
 
 
@@ -203,7 +212,7 @@ def test_bad_input_ends_with_1_and_writes_nothing(folder, kind):
 def test_skip_invalid_drops_and_says_so():
     broken("a.ply", SQUARE.replace("1 1 0\n", "1 1 nan\n").replace("face 1", "face 2").replace(
         "4 0 1 2 3", "3 0 1 2\n3 0 1 3"))
-    result = kerf("render", "a.ply", "-o", "out.png", "--skip-invalid")
+    result = kerf("render", "a.ply", "-o", "out.png", "--skip-invalid", *QUICK)
     assert result.returncode == 0 and "1 invalid triangle" in result.stderr
 
 
@@ -222,7 +231,7 @@ def test_output_is_judged_before_any_work():
 
 def test_standard_output_that_is_full_ends_with_1():
     with open("/dev/full", "w") as full:
-        for command in [["list"], ["list", "--json", "-"], ["render", "square.ply", "--quiet", "--json", "-"]]:
+        for command in [["list"], ["list", "--json", "-"], ["render", "square.ply", *QUICK, "--quiet", "--json", "-"]]:
             assert subprocess.run([KERF, *command], stdout=full, stderr=subprocess.PIPE).returncode == 1, command
 
 
@@ -250,6 +259,47 @@ def test_an_interrupt_writes_what_is_there_and_ends_with_130(folder):
     pixels = [value for row in read_pfm("out.pfm") for value in row]
     assert len(pixels) == 2000 * rows
     assert any(value != float("inf") for value in pixels), "what was reached is there"
+
+
+def test_the_picture_is_the_same_for_any_threads_and_structure_and_another_for_another_seed(folder):
+    def picture(*more):
+        result = kerf("render", "square.ply", "-o", "out.pfm", *QUICK, *CAMERA, *more)
+        assert result.returncode == 0, result.stderr
+        return (folder / "out.pfm").read_bytes()
+    first = picture("--threads", "1")
+    assert picture("--threads", "3") == first
+    assert picture("--structure", "early_split(sa_max=0.1)+sweep_sah") == first
+    assert picture("--seed", "1") != first
+
+
+def test_compare_says_what_rays_cost_in_both_structures():
+    result = kerf("render", "square.ply", *QUICK, "--compare", "spatial_median", "--json", "-")
+    assert result.returncode == 0, result.stderr
+    plain, own = json.loads(result.stdout)["comparison"]
+    assert (plain["structure"], own["structure"]) == ("spatial_median", "binned_sah")
+    for cost in (plain, own):
+        assert cost["rays"] > 100000 and cost["nodes_per_ray"] > 0.1 and cost["nanoseconds_per_ray"] > 1
+    assert "times as fast" in result.stderr and "spatial_median: " in result.stderr
+
+
+def test_an_interrupted_picture_is_whole(folder):
+    process = subprocess.Popen([KERF, "render", "square.ply", "-o", "out.pfm", "--size", "64x48", "--spp", "1000000"],
+                               stderr=subprocess.PIPE)
+    time.sleep(2)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(timeout=60) == 130
+    assert "interrupted" in process.stderr.read().decode()
+    assert all(value > 0 for row in read_pfm("out.pfm") for value in row)
+
+
+def test_check_says_what_is_there_and_writes_nothing(folder):
+    before = sorted(os.listdir(folder))
+    result = kerf("check", "square.ply")
+    assert result.returncode == 0 and "2 primitives" in result.stdout, result.stderr
+    figures = json.loads(kerf("check", "square.ply", "--json", "-").stdout)
+    assert figures["objects"] == 1 and figures["scene"]["primitives"] == 2 and figures["notes"] == []
+    assert kerf("check", "missing.ply").returncode == 1
+    assert sorted(os.listdir(folder)) == before
 
 
 if __name__ == "__main__":
