@@ -257,6 +257,8 @@ TEST_F(MtlFiles, SeveralLibrariesAndNamesWithBlanksAreFound) {
                    "the first of several material libraries counts for the material 'a'"}));
   write("c.mtl", "newmtl c\n");
   EXPECT_EQ(read("mtllib C:\\work\\maps\\c.mtl\nusemtl c\n*").notes, Notes());
+  EXPECT_EQ(read("mtllib C:\\my work\\a b.mtl\nusemtl ab\n*").notes, Notes());
+  EXPECT_EQ(names(read("mtllib a.mtl maps/c.mtl\nusemtl a\n*")), (std::vector<std::string>{"a"}));
 }
 
 TEST_F(MtlFiles, LibrariesThatAreMissingLeaveDefaultMaterials) {

@@ -235,7 +235,7 @@ void expect_same(const SceneDescription& read, const Written& scene) {
 }
 
 TEST(YamlProperty, AnySceneReadsBackAsItWas) {
-  check_property(500, [] {
+  check_property(300, [] {
     const Written scene = draw_scene();
     const std::string text = Writer().text(scene);
     RC_LOG() << text;

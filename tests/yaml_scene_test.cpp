@@ -121,10 +121,10 @@ TEST(YamlScene, KeysWithoutAUseAreNotedOncePerTypeAndKey) {
       "  - {name: f, type: metal, roughness: 0.5, metallic: 0.25}\n"
       "  - {name: g, type: dielectric, refractive_index: 1.3, transmission: 0, metallic: 1}\n");
   EXPECT_EQ(scene.notes, (std::vector<std::string>{
-                             "a light does not use 'albedo' (t.yaml:2:47 and 2 more)",
-                             "a lambertian material does not use 'roughness' (t.yaml:4:14)",
-                             "a mirror material does not use 'metallic' (t.yaml:6:28)",
-                             "a glass material does not use 'metallic' (t.yaml:8:72)",
+                             "a light does not use 'albedo' (t.yaml:2:49 and 2 more)",
+                             "a lambertian material does not use 'roughness' (t.yaml:4:15)",
+                             "a mirror material does not use 'metallic' (t.yaml:6:29)",
+                             "a glass material does not use 'metallic' (t.yaml:8:73)",
                          }));
   EXPECT_EQ(scene.materials[0].albedo, (Vec3f{0.7F, 0.7F, 0.7F}));
   EXPECT_EQ(scene.materials[2].roughness, 0);
@@ -218,6 +218,18 @@ TEST(YamlScene, AliasesStandForTheirAnchors) {
   EXPECT_EQ(std::get<Sphere>(scene.objects[2].shape).center, (Vec3f{1, 2, 3}));
   EXPECT_EQ(std::get<Sphere>(scene.objects[2].shape).radius, 2);
   EXPECT_EQ(scene.objects[2].place, "t.yaml:6:5") << "of the alias";
+}
+
+TEST(YamlScene, WhatYamlAllowsOfTextsIsRight) {
+  const auto name_of = [](const std::string& value) { return parse("%YAML 1.2\n---\nscene:\n  name: " + value).name; };
+  EXPECT_EQ(name_of("it's a \"room\" # two"), "it's a \"room\"");
+  EXPECT_EQ(name_of("'it''s'\n"), "it's");
+  EXPECT_EQ(name_of("\"a\\\"\\\\\""), "a\"\\");
+  EXPECT_EQ(name_of("&a # '\n    ! b"), "b");
+  EXPECT_EQ(name_of("|\n    it's\n    \"two\n"), "it's\n\"two\n");
+  EXPECT_EQ(name_of(">-\n    one\n    [two\n...\n"), "one [two");
+  EXPECT_EQ(name_of("one\n    two"), "one two");
+  EXPECT_EQ(name_of("12"), "12");
 }
 
 TEST(YamlScene, ReadsAFileRelativeToItsOwnFolderAndWindowsTextToo) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <initializer_list>
 #include <string>
 
@@ -27,11 +28,17 @@ inline std::string error_of(const std::string& text, const std::string& folder =
   return "no error";
 }
 
-/// The text is refused at "LINE:COLUMN" with a sentence that has all these parts.
-inline void expect_error(const std::string& text, const std::string& place, std::initializer_list<const char*> parts) {
+/// The text, without its mark '^', is refused where the mark stands, with a sentence that has all these parts.
+inline void expect_error(std::string text, std::initializer_list<const char*> parts) {
+  const size_t mark = text.find('^');
+  ASSERT_NE(mark, std::string::npos) << text;
+  text.erase(mark, 1);
   SCOPED_TRACE(text);
+  const auto lines = std::count(text.begin(), text.begin() + static_cast<ptrdiff_t>(mark), '\n');
+  const size_t line_begin = mark == 0 ? 0 : text.rfind('\n', mark - 1) + 1;
+  const std::string place = "t.yaml:" + std::to_string(lines + 1) + ":" + std::to_string(mark - line_begin + 1) + ": ";
   const std::string what = error_of(text);
-  EXPECT_TRUE(what.starts_with("t.yaml:" + place + ": ")) << what << "\nis not at " << place;
+  EXPECT_TRUE(what.starts_with(place)) << what << "\nis not at " << place;
   for (const char* part : parts) EXPECT_NE(what.find(part), std::string::npos) << what << "\nhas not: " << part;
 }
 
@@ -42,11 +49,13 @@ inline const std::string kMaterials =
     "  - name: n\n"
     "    type: mirror\n";
 
-/// The scene of one item of geometry, which begins at 6:5, in flow style.
+/// The scene of one item of geometry in flow style, in line 6; with the mark of expect_error() at the item.
 inline std::string with_item(const std::string& item) { return kMaterials + "geometry:\n  - {" + item + "}\n"; }
+inline std::string at_item(const std::string& item) { return kMaterials + "geometry:\n  - ^{" + item + "}\n"; }
 
-/// The scene of one material, which begins at 2:5, in flow style.
+/// The same of one material, in line 2.
 inline std::string with_material(const std::string& item) { return "materials:\n  - {" + item + "}\n"; }
+inline std::string at_material(const std::string& item) { return "materials:\n  - ^{" + item + "}\n"; }
 
 /// An ASCII PLY of a triangle and the square next to it; three triangles over five vertices.
 inline std::string small_ply() {

@@ -30,6 +30,7 @@ constexpr std::string_view kBeauty = "beauty";
 struct Arguments : SceneArguments {
   std::string output, view = std::string(kBeauty), size = "960x640", compare;
   uint32_t samples = 32, seed = 0;
+  float exposure = 0;
 };
 
 /// What is drawn: a debug view, or none for the path-traced picture.
@@ -91,7 +92,7 @@ Picture render_beauty(const RenderScene& scene, const Camera& camera, const Argu
                      {"rays", result.rays},
                      {"invalid_paths", result.invalid}};
   const bool as_values = image_format(a.output) != ImageFormat::png;
-  picture.image = as_values ? std::move(result.radiance) : srgb_picture(result.radiance);
+  picture.image = as_values ? std::move(result.radiance) : srgb_picture(result.radiance, a.exposure);
   picture.complete = result.complete;
   picture.seconds = result.seconds;
   return picture;
@@ -190,6 +191,9 @@ void add_render(CLI::App& app, std::function<int()>& run) {
       ->check(CLI::Range(1, 1 << 24))
       ->capture_default_str();
   command->add_option("--seed", a->seed, "Another number gives another noise")->capture_default_str();
+  command->add_option("--exposure", a->exposure, "Stops by which a PNG is brightened (negative: darkened)")
+      ->check(CLI::Range(-64.0, 64.0))
+      ->capture_default_str();
   command->add_option("--view", a->view, "beauty (path-traced), or a view of what rays hit; see kerf list")
       ->capture_default_str();
   command->add_option("--compare", a->compare, "Also say what rays cost in this structure, such as binned_sah");

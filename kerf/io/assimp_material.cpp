@@ -19,6 +19,11 @@ float share(float value) { return value > 0 ? std::min(value, 1.F) : 0.F; }  // 
 
 Vec3f color_of(const aiColor3D& color) { return {share(color.r), share(color.g), share(color.b)}; }
 
+std::string lower_case(std::string text) {
+  for (char& c : text) c = 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
 /// Keeps `value` where the material has no such number.
 void get(const aiMaterial& from, const char* key, unsigned int type, unsigned int index, float& value) {
   ai_real found = 0;
@@ -71,12 +76,17 @@ void AssimpMaterials::set_texture(const aiMaterial& from, AssimpMaterial& to) {
   }
 }
 
-void AssimpMaterials::set_type(const aiMaterial& from, Material& material) const {
+void AssimpMaterials::set_type(const aiMaterial& from, Material& material) {
   float opacity = 1, index = 1, metallic = 0, roughness = 1;
   get(from, AI_MATKEY_OPACITY, opacity);
   get(from, AI_MATKEY_REFRACTI, index);
   get(from, AI_MATKEY_METALLIC_FACTOR, metallic);
   get(from, AI_MATKEY_ROUGHNESS_FACTOR, roughness);
+  if (share(opacity) == 0) {
+    // Formats disagree on whether 0 is clear or solid, and hardly any file has what nobody can see.
+    notes_.add("what would be invisible, with an opacity of 0, is shown as solid", material.name);
+    opacity = 1;
+  }
   if (share(opacity) < 1) {
     material.type = MaterialType::glass;
     material.transmission = 1 - share(opacity);
@@ -110,15 +120,19 @@ Texture AssimpMaterials::read(const std::string& name) const {
 
 std::string AssimpMaterials::find_file(std::string name) const {
   std::replace(name.begin(), name.end(), '\\', '/');
-  const std::filesystem::path folder = std::filesystem::path(path_).parent_path();
-  const std::filesystem::path as_said = folder / name;
-  // Many a file names its textures as they lay on the disk of who made it.
-  const std::filesystem::path beside = folder / std::filesystem::path(name).filename();
+  if (name.starts_with("//")) name.erase(0, 2);  // Blender's way to say that it is relative
+  const std::filesystem::path folder = std::filesystem::absolute(path_).parent_path();
   std::error_code error;
-  for (const std::filesystem::path& path : {as_said, beside}) {
-    if (std::filesystem::is_regular_file(path, error)) return path.string();
+  if (std::filesystem::is_regular_file(folder / name, error)) return (folder / name).string();
+  // Many a file names its textures as they lay on the disk of who made it, or in capital letters.
+  const std::string wanted = lower_case(std::filesystem::path(name).filename().string());
+  std::string found;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string other = entry->path().filename().string();
+    if (lower_case(other) == wanted && (found.empty() || other < found)) found = other;
   }
-  if (std::filesystem::exists(as_said, error)) throw Error(ErrorCode::file, name, "is not a regular file");
+  const std::filesystem::path file = folder / found;
+  if (!found.empty() && std::filesystem::is_regular_file(file, error)) return file.string();
   throw Error(ErrorCode::file, name, "there is no such file");
 }
 

@@ -32,7 +32,7 @@ class AssimpMaterials {
 
  private:
   void set_texture(const aiMaterial& from, AssimpMaterial& to);
-  void set_type(const aiMaterial& from, Material& material) const;
+  void set_type(const aiMaterial& from, Material& material);
   uint32_t find_texture(const std::string& name);
   Texture read(const std::string& name) const;
   std::string find_file(std::string name) const;

@@ -1,5 +1,6 @@
 #include "kerf/io/assimp_model.h"
 
+#include <assimp/BaseImporter.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -14,10 +15,11 @@
 #include <string_view>
 
 #include "kerf/base/error.h"
+#include "kerf/io/assimp_guard.h"
 #include "kerf/io/assimp_material.h"
 #include "kerf/io/mapped_file.h"
 #include "kerf/io/mesh_builder.h"
-#include "kerf/io/message.h"
+#include "kerf/io/notes.h"
 
 namespace kerf {
 namespace {
@@ -26,30 +28,6 @@ Vec3d vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
 Transform transform_of(const aiMatrix4x4& m) {
   return {{{m.a1, m.b1, m.c1}, {m.a2, m.b2, m.c2}, {m.a3, m.b3, m.c3}}, {m.a4, m.b4, m.c4}};
-}
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return text;
-}
-
-/// Assimp takes any STEP file for a building. One of a CAD part has curved surfaces, of which it would show none.
-void refuse_cad_parts(std::span<const char> bytes, const std::string& path) {
-  constexpr std::string_view kMagic = "ISO-10303-21", kSchema = "FILE_SCHEMA";
-  constexpr size_t kHeader = size_t{1} << 16;
-  const std::string_view head = std::string_view(bytes.data(), bytes.size()).substr(0, kHeader);
-  if (head.substr(0, 256).find(kMagic) == std::string_view::npos) return;
-  const size_t schema = head.find(kSchema);
-  if (schema == std::string_view::npos) return;
-  const size_t begin = head.find('\'', schema);
-  if (begin == std::string_view::npos) return;
-  const std::string_view name = head.substr(begin + 1, head.find('\'', begin + 1) - begin - 1);
-  if (lower_case(std::string(name.substr(0, 3))) == "ifc") return;
-  throw Error(
-      ErrorCode::file, path,
-      fmt::format("is a STEP file of schema {}, a part with curved surfaces (B-rep), which cannot be read; save "
-                  "it as triangles, such as STL or glTF",
-                  quoted(name)));
 }
 
 /// Makes a Model of what Assimp has read.
@@ -92,7 +70,7 @@ class Converter {
 
   const AssimpMaterial& material_of(const aiMesh& mesh) {
     static const AssimpMaterial kDefault;
-    if (mesh.mMaterialIndex >= converted_.size()) return kDefault;
+    if (mesh.mMaterialIndex >= converted_.size() || scene_.mMaterials[mesh.mMaterialIndex] == nullptr) return kDefault;
     std::optional<AssimpMaterial>& converted = converted_[mesh.mMaterialIndex];
     if (!converted) converted = materials_.convert(*scene_.mMaterials[mesh.mMaterialIndex]);
     return *converted;
@@ -103,23 +81,33 @@ class Converter {
       const aiNode* node;
       Transform parent;
     };
-    std::vector<Open> open;
-    if (scene_.mRootNode != nullptr) open.push_back({scene_.mRootNode, {}});
+    std::vector<Open> open{{scene_.mRootNode, {}}};
+    std::vector<bool> is_placed(scene_.mNumMeshes);
     while (!open.empty()) {
       const auto [node, parent] = open.back();
       open.pop_back();
+      if (node == nullptr) continue;  // some readers count more children than they make
       const Transform place = then(transform_of(node->mTransformation), parent);
       for (unsigned int i = 0; i < node->mNumMeshes; ++i) {
         if (node->mMeshes[i] >= scene_.mNumMeshes) fail("a node names a mesh that is not there");
-        const aiMesh* mesh = scene_.mMeshes[node->mMeshes[i]];
-        if ((mesh->mPrimitiveTypes & (aiPrimitiveType_POINT | aiPrimitiveType_LINE)) != 0) {
-          notes_.add("points and lines are left out");
-        }
-        if ((mesh->mPrimitiveTypes & aiPrimitiveType_TRIANGLE) != 0) instances_.push_back({mesh, place});
+        is_placed[node->mMeshes[i]] = true;
+        take_mesh(scene_.mMeshes[node->mMeshes[i]], place);
       }
       if (!camera_) take_camera(*node, place);
       for (unsigned int i = node->mNumChildren; i-- > 0;) open.push_back({node->mChildren[i], place});
     }
+    if (std::find(is_placed.begin(), is_placed.end(), false) != is_placed.end()) {
+      notes_.add("a mesh that no node places is left out");
+    }
+  }
+
+  void take_mesh(const aiMesh* mesh, const Transform& place) {
+    if (mesh == nullptr || !mesh->HasPositions()) return;
+    if ((mesh->mPrimitiveTypes & (aiPrimitiveType_POINT | aiPrimitiveType_LINE)) != 0) {
+      notes_.add("points and lines are left out");
+    }
+    if (mesh->mNumBones > 0) notes_.add("bones have no effect; the mesh is shown as it is without them");
+    if ((mesh->mPrimitiveTypes & aiPrimitiveType_TRIANGLE) != 0) instances_.push_back({mesh, place});
   }
 
   void take_camera(const aiNode& node, const Transform& place) {
@@ -150,8 +138,6 @@ class Converter {
 
   void copy(const Instance& instance) {
     const aiMesh& mesh = *instance.mesh;
-    if (!mesh.HasPositions()) return;
-    if (mesh.mNumBones > 0) notes_.add("bones have no effect; the mesh is shown as it is without them");
     builder_.set_place(instance.place);
     MeshBuilder::Part part;
     part.material = mesh.mMaterialIndex;
@@ -187,7 +173,16 @@ class Converter {
   MeshBuilder builder_;
 };
 
+/// The reader of OpenGEX writes what it finds wrong to the standard error, which is not ours to write to.
+void unregister_loud(Assimp::Importer& importer) {
+  const size_t number = importer.GetImporterIndex(".ogex");
+  if (number == static_cast<size_t>(-1)) return;
+  Assimp::BaseImporter* loud = importer.GetImporter(number);
+  if (importer.UnregisterLoader(loud) == aiReturn_SUCCESS) delete loud;
+}
+
 const aiScene* import(Assimp::Importer& importer, const std::string& path) {
+  unregister_loud(importer);
   // Joining compares all that a vertex has, so what is not used goes first.
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
                               aiComponent_COLORS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_BONEWEIGHTS);
@@ -198,15 +193,17 @@ const aiScene* import(Assimp::Importer& importer, const std::string& path) {
 }  // namespace
 
 Model read_with_assimp(const std::string& path) {
-  {
-    const MappedFile file(path);  // says it better than Assimp where there is none
-    refuse_cad_parts(file.bytes(), path);
+  std::error_code status;
+  if (std::filesystem::exists(path, status) && std::filesystem::is_other(path, status)) {
+    throw Error(ErrorCode::file, path, "is not a regular file");  // Assimp goes back and forth in what it reads
   }
+  check_for_assimp(MappedFile(path).bytes(), path);  // and says it better than Assimp where there is no such file
   try {
     Assimp::Importer importer;
     const aiScene* scene = import(importer, path);
     if (scene == nullptr) {
-      throw Error(ErrorCode::file, path, fmt::format("cannot be read by Assimp: {}", importer.GetErrorString()));
+      throw Error(ErrorCode::file, path,
+                  fmt::format("cannot be read by Assimp: {}", first_line(importer.GetErrorString())));
     }
     return Converter(*scene, path).convert();
   } catch (const Error&) {
@@ -214,13 +211,15 @@ Model read_with_assimp(const std::string& path) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    throw Error(ErrorCode::file, path, fmt::format("cannot be read by Assimp: {}", error.what()));
+    throw Error(ErrorCode::file, path, fmt::format("cannot be read by Assimp: {}", first_line(error.what())));
   }
 }
 
 std::vector<std::string> assimp_extensions() {
   std::string list;  // "*.3ds;*.obj"
-  Assimp::Importer().GetExtensionList(list);
+  Assimp::Importer importer;
+  unregister_loud(importer);
+  importer.GetExtensionList(list);
   std::vector<std::string> extensions;
   for (size_t begin = 0; begin < list.size();) {
     const size_t end = std::min(list.find(';', begin), list.size());

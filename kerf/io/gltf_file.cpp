@@ -26,14 +26,6 @@ bool is_in(const std::string_view (&list)[Count], const std::string& word) {
   return std::find(std::begin(list), std::end(list), word) != std::end(list);
 }
 
-/// The first line of what tinygltf says, fit to be shown.
-std::string first_line(const std::string& text) {
-  constexpr size_t kMost = 200;  // it may repeat what the file has
-  std::string shown;
-  for (const char c : text.substr(0, std::min(text.find('\n'), kMost))) shown += printable({&c, 1});
-  return shown;
-}
-
 void check_extensions(GltfFile& file) {
   std::string missing, unused;
   const auto append = [](std::string& list, const std::string& name) {

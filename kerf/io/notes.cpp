@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <string_view>
+#include <algorithm>
+
+#include "kerf/io/message.h"
 
 namespace kerf {
 
@@ -33,6 +35,13 @@ std::string sentence_of(const Error& error) {
   const std::string_view what = error.what();
   const size_t prefix = error.place().empty() ? 0 : error.place().size() + 2;  // "place: "
   return std::string(what.substr(std::min(prefix, what.size())));
+}
+
+std::string first_line(std::string_view text) {
+  constexpr size_t kMost = 200;  // it may repeat what the file has
+  std::string shown;
+  for (const char c : text.substr(0, std::min(text.find('\n'), kMost))) shown += printable({&c, 1});
+  return shown;
 }
 
 }  // namespace kerf

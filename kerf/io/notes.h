@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "kerf/base/error.h"
@@ -27,5 +28,8 @@ class Notes {
 
 /// What an Error says, without its place.
 std::string sentence_of(const Error& error);
+
+/// The first line of what another library says, at most 200 characters, printable.
+std::string first_line(std::string_view text);
 
 }  // namespace kerf

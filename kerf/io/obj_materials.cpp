@@ -21,17 +21,32 @@ namespace {
 
 using std::filesystem::path;  // brings std::quoted() along, which is not ours
 
-/// The file that is named in another one, relative to its folder, with slashes of either kind; or else the file of this
-/// name in the folder itself, as models are moved without the folders that they were made in. Empty where there is
-/// neither. Only regular files: a device could be read without end.
-std::string find_beside(const path& folder, std::string name) {
+/// The file that is named in another one, relative to its folder, with slashes of either kind; empty where there is
+/// none. Only regular files: a device could be read without end.
+std::string find_named(const path& folder, std::string name) {
   if (name.empty() || name.find('\0') != name.npos) return {};
   std::replace(name.begin(), name.end(), '\\', '/');
-  for (const path& candidate : {folder / name, folder / path(name).filename()}) {
-    std::error_code ignored;
-    if (std::filesystem::is_regular_file(candidate, ignored)) return candidate.lexically_normal().string();
+  const path candidate = folder / name;
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(candidate, ignored) ? candidate.lexically_normal().string() : std::string();
+}
+
+/// As find_named(), or else the file of this name in the folder itself: models are moved without the folders that they
+/// were made in.
+std::string find_moved(const path& folder, const std::string& name) {
+  std::string found = find_named(folder, name);
+  if (found.empty()) found = find_named(folder, name.substr(name.find_last_of("/\\") + 1));
+  return found;
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::vector<std::string> words;
+  for (size_t begin = text.find_first_not_of(" \t"); begin != text.npos;) {
+    const size_t end = std::min(text.find_first_of(" \t", begin), text.size());
+    words.push_back(text.substr(begin, end - begin));
+    begin = text.find_first_not_of(" \t", end);
   }
-  return {};
+  return words;
 }
 
 /// A material and the folder that its texture's name is relative to.
@@ -45,14 +60,15 @@ class Libraries {
  public:
   Libraries(path folder, std::vector<std::string>& notes) : folder_(std::move(folder)), notes_(notes) {}
 
-  /// Loads what a mtllib statement names: one file, or several where there is none of the whole name.
+  /// Loads what a mtllib statement names: one file, of which the name may have blanks, or several.
   void load(const std::string& names) {
-    if (const std::string whole = find_beside(folder_, names); !whole.empty()) return load_file(whole);
-    for (size_t begin = names.find_first_not_of(" \t"); begin != names.npos;) {
-      const size_t end = std::min(names.find_first_of(" \t", begin), names.size());
-      load_one(names.substr(begin, end - begin));
-      begin = names.find_first_not_of(" \t", end);
+    if (const std::string whole = find_named(folder_, names); !whole.empty()) return load_file(whole);
+    const std::vector<std::string> words = words_of(names);
+    const auto is_missing = [&](const std::string& word) { return find_moved(folder_, word).empty(); };
+    if (std::any_of(words.begin(), words.end(), is_missing)) {
+      if (const std::string whole = find_moved(folder_, names); !whole.empty()) return load_file(whole);
     }
+    for (const std::string& word : words) load_one(word);
   }
 
   const FoundMaterial* find(const std::string& name) const {
@@ -81,7 +97,7 @@ class Libraries {
 
  private:
   void load_one(const std::string& name) {
-    if (const std::string found = find_beside(folder_, name); !found.empty()) return load_file(found);
+    if (const std::string found = find_moved(folder_, name); !found.empty()) return load_file(found);
     if (!missing_.insert(name).second) return;
     notes_.push_back(
         fmt::format("the material library {} was not found; default materials are used", kerf::quoted(name)));
@@ -117,7 +133,7 @@ class Textures {
 
   /// The number of the texture; kNoTexture with a note where there is none.
   uint32_t load(const path& folder, const std::string& name) {
-    const std::string file = find_beside(folder, name);
+    const std::string file = find_moved(folder, name);
     const auto [entry, is_new] = numbers_.try_emplace(file.empty() ? name : file, kNoTexture);
     if (!is_new) return entry->second;
     if (file.empty()) {

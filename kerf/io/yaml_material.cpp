@@ -156,9 +156,10 @@ class MaterialReader {
 
 void YamlMaterials::read(const YamlField& section, Notes& notes) {
   for (const YamlField& item : items_of(section)) {
-    const std::optional<YamlField> type = peek(item, "type");
+    const std::optional<YamlField> word = peek(item, "type");
+    const MaterialType type = word ? read_type(*word) : MaterialType::lambertian;
     refuse_future_keys(item.node());
-    MaterialReader reader(item, type ? read_type(*type) : MaterialType::lambertian, notes);
+    MaterialReader reader(item, type, notes);
     Material material = reader.read();
     const YamlField name = reader.map().require("name");
     material.name = name.text();

@@ -97,7 +97,7 @@ double YamlField::number(const YamlRange& range) const {
   const std::optional<double> x = parse_number(text);
   if (!x) fail_type("a number");
   if (!(-kMaxCoordinate <= *x && *x <= kMaxCoordinate)) {
-    fail(fmt::format("a number's size must be at most 2^120 (1.3e36), and not less than a double can have, found {}",
+    fail(fmt::format("a number's size must be at most 2^120 (1.3e36) and not too small for a double, found {}",
                      node_.description()));
   }
   if (!holds(range, *x)) fail(fmt::format("{}, found {}", sentence_of(range), printable(text)));
@@ -127,6 +127,7 @@ bool YamlField::boolean() const {
 std::string YamlField::text() const {
   if (node_.kind() != YamlKind::scalar) fail_type("a text");
   if (node_.text().empty()) fail("must not be empty");
+  if (node_.text().find('\0') != std::string_view::npos) fail("must not have a zero byte");  // files have names without
   return std::string(node_.text());
 }
 

@@ -95,7 +95,7 @@ class YamlField {
   Vec3f single_vector(const YamlRange& range = kAnyNumber) const { return to_float(vector(range)); }
   /// true or false, without quotes.
   bool boolean() const;
-  /// A scalar of at least one byte, quoted or not.
+  /// A scalar of at least one byte, none of them zero, quoted or not.
   std::string text() const;
 
   /// "KEY: sentence"

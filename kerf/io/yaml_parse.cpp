@@ -58,7 +58,9 @@ class TreeBuilder : public YAML::EventHandler {
     YamlTree::Use use = place_of(mark);
     // yaml-cpp's mark of what is not there is where the next thing begins, maybe lines below.
     if (is_map_value()) {
-      use = pending_.back();
+      const YamlTree::Use& key = pending_.back();
+      if (key.line == use.line && key.column == use.column) refuse(mark, "a key without a ':' behind it");
+      use = key;
     } else if (!open_.empty() && open_.back().is_block_sequence) {
       use = open_.back().use;
     }
@@ -193,14 +195,24 @@ void refuse_control_bytes(std::string_view text, const std::string& name) {
   }
 }
 
+/// Refuses lines that begin with a percent sign, but for the version of YAML: yaml-cpp passes over what it does not
+/// know, wherever it stands.
+void refuse_directives(std::string_view text, const std::string& name) {
+  for (size_t begin = 0, line = 1; begin < text.size(); ++line) {
+    const std::string_view rest = text.substr(begin);
+    if (rest.starts_with('%') && !rest.starts_with("%YAML ")) fail(name, line, 1, "directives ('%') are not supported");
+    begin += std::min(rest.find('\n'), rest.size() - 1) + 1;
+  }
+}
+
 /// Refuses a quoted text without an end, which yaml-cpp takes for one that ends with the file. It is the last one.
 void refuse_open_quote(std::string_view text, size_t begin, const std::string& name) {
-  // Anchors stand before the quote.
-  while (begin < text.size() && text[begin] != '\'' && text[begin] != '"') {
-    if (text[begin] == '|' || text[begin] == '>') return;
+  // Anchors, and a tag that says no more than "text", stand before it.
+  while (begin < text.size() && (text[begin] == '&' || text[begin] == '!' || text[begin] == '#')) {
     const size_t end = text[begin] == '#' ? text.find('\n', begin) : text.find_first_of(" \t\r\n", begin);
     begin = std::min(text.find_first_not_of(" \t\r\n", end), text.size());
   }
+  if (begin == text.size() || (text[begin] != '\'' && text[begin] != '"')) return;
   for (size_t i = begin + 1; i < text.size(); ++i) {
     if (text[i] == '\\' && text[begin] == '"') {
       ++i;
@@ -239,6 +251,7 @@ YamlTree parse_yaml(std::string_view text, const std::string& name) {
   if (text.size() > kMostBytes) throw Error(ErrorCode::file, name, "a YAML file may have at most 2^30 bytes");
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // a byte order mark
   refuse_control_bytes(text, name);
+  refuse_directives(text, name);
   TreeBuilder builder(name);
   ViewBuffer buffer(text);
   std::istream stream(&buffer);

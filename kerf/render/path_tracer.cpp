@@ -262,9 +262,10 @@ Image mean_of(const Film& film, uint32_t width, uint32_t height) {
 
 }  // namespace
 
-Image srgb_picture(const Image& radiance) {
+Image srgb_picture(const Image& radiance, float stops) {
   Image picture = radiance;
-  for (float& value : picture.pixels) value = srgb_encoded(value);
+  const float factor = std::exp2(stops);
+  for (float& value : picture.pixels) value = srgb_encoded(value * factor);
   return picture;
 }
 

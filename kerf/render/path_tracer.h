@@ -35,7 +35,7 @@ struct PathTracerResult {
 /// the camera, the size, the samples and the seed.
 PathTracerResult render_paths(const RenderScene& scene, const Camera& camera, const PathTracerOptions& options);
 
-/// A linear picture as a display shows it: sRGB encoded, clamped to [0, 1].
-Image srgb_picture(const Image& radiance);
+/// A linear picture as a display shows it: brightened by a number of stops, sRGB encoded, clamped to [0, 1].
+Image srgb_picture(const Image& radiance, float stops = 0);
 
 }  // namespace kerf

@@ -17,10 +17,10 @@ DESCRIPTION = (
 def scene():
     scene = Scene("pavilion", DESCRIPTION, turn=31, move=(-8.0, 0.0, 0.0))
     scene.settings = {
-        "background_color": (0.62, 0.79, 1.0),
+        "background_color": (0.60, 0.75, 1.0),
         "background_intensity": 1.25,
         "ambient_light": 0.0,
-        "structure": "early_split(budget=1.5)+binned_sah",
+        "structure": "early_split(budget=2)+binned_sah",
     }
     _materials(scene)
     _light(scene)

@@ -43,8 +43,8 @@ def _roof(scene, random):
     bays = spread(0.0, LENGTH, 7)
     for x0, x1 in zip(bays, bays[1:]):  # wind bracing: rods from corner to corner of each bay, and half bays
         for z0, z1 in ((0.2, WIDTH / 2), (WIDTH / 2, WIDTH - 0.2)):
-            steel.tube(roof(x0, z0, 0.62), roof(x1, z1, 0.62), 0.014, 6)
-            steel.tube(roof(x0, z1, 0.66), roof(x1, z0, 0.66), 0.014, 6)
+            steel.tube(roof(x0, z0, 0.62), roof(x1, z1, 0.62), 0.012, 4)
+            steel.tube(roof(x0, z1, 0.66), roof(x1, z0, 0.66), 0.012, 4)
 
 
 def _columns(scene):
