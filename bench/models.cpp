@@ -50,7 +50,8 @@ class Grid {
 
   Vec3f vertex(uint64_t i) const {
     const auto step = 10 / static_cast<double>(side_);
-    const double x = static_cast<double>(i % (side_ + 1)) * step, y = static_cast<double>(i / (side_ + 1)) * step;
+    const uint64_t column = i % (side_ + 1), row = i / (side_ + 1);
+    const double x = static_cast<double>(column) * step, y = static_cast<double>(row) * step;
     return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(std::sin(3 * x) * std::cos(2 * y))};
   }
 

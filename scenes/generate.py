@@ -8,10 +8,10 @@ import sys
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from generator import pavilion  # noqa: E402
+from generator import bicycle, pavilion  # noqa: E402
 from generator.files import files_of, ply_bytes  # noqa: E402
 
-SCENES = {"pavilion": pavilion}
+SCENES = {"pavilion": pavilion, "bicycle": bicycle}
 HERE = pathlib.Path(__file__).resolve().parent
 
 
@@ -20,12 +20,12 @@ def parsed(arguments):
         description=__doc__,
         epilog="Example: python3 scenes/generate.py pavilion --output /tmp --ply /tmp/pavilion.ply",
     )
-    parser.add_argument("scene", choices=[*SCENES, "all"], help="what to make; " + "; ".join(
-        f"{name}: {module.__doc__.strip()}" for name, module in SCENES.items()))
+    kinds = "; ".join(f"{name}: {module.__doc__[:-1]}" for name, module in SCENES.items())
+    parser.add_argument("scene", choices=[*SCENES, "all"], help=f"what to make; {kinds}")
     parser.add_argument("--output", type=pathlib.Path, default=HERE, metavar="FOLDER",
                         help="where the YAML file and the folder of models go (default: the folder of this script)")
-    parser.add_argument("--check", action="store_true", help="write nothing; fail if a file is not what would be written")
-    parser.add_argument("--ply", type=pathlib.Path, metavar="FILE", help="also write all triangles of the scene as a PLY")
+    parser.add_argument("--check", action="store_true", help="write nothing; fail if a file differs from what would be")
+    parser.add_argument("--ply", type=pathlib.Path, metavar="FILE", help="also write the scene's triangles as a PLY")
     return parser.parse_args(arguments)
 
 

@@ -62,16 +62,14 @@ struct GltfMaker {
   template <class T>
   int accessor(const std::vector<T>& values, size_t components, const std::string& extra = "") {
     const int number = view({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
-    return accessor_of<T>(values.size() / components, components,
-                          ",\"bufferView\":" + std::to_string(number) + extra);
+    return accessor_of<T>(values.size() / components, components, ",\"bufferView\":" + std::to_string(number) + extra);
   }
 
   template <class T>
   int accessor_of(size_t count, size_t components, const std::string& extra) {
     const char* types[] = {"SCALAR", "VEC2", "VEC3", "VEC4"};
-    accessors.push_back("{\"componentType\":" + std::to_string(component_type<T>()) +
-                        ",\"count\":" + std::to_string(count) + ",\"type\":\"" + types[components - 1] + "\"" + extra +
-                        "}");
+    accessors.push_back("{\"componentType\":" + std::to_string(component_type<T>()) + ",\"count\":" +
+                        std::to_string(count) + ",\"type\":\"" + types[components - 1] + "\"" + extra + "}");
     return static_cast<int>(accessors.size()) - 1;
   }
 
@@ -170,8 +168,8 @@ inline void expect_sound(const Mesh& mesh) {
   const Triangles& uv_corners = mesh.uv_corners.empty() ? mesh.triangles : mesh.uv_corners;
   EXPECT_EQ(normal_corners.size(), mesh.triangles.size());
   EXPECT_EQ(uv_corners.size(), mesh.triangles.size());
-  if (!mesh.normals.empty()) EXPECT_TRUE(in_range(normal_corners, mesh.normals.size(), true));
-  if (!mesh.uvs.empty()) EXPECT_TRUE(in_range(uv_corners, mesh.uvs.size(), true));
+  EXPECT_TRUE(mesh.normals.empty() || in_range(normal_corners, mesh.normals.size(), true));
+  EXPECT_TRUE(mesh.uvs.empty() || in_range(uv_corners, mesh.uvs.size(), true));
   EXPECT_TRUE(mesh.materials.empty() || mesh.materials.size() == mesh.triangles.size());
 }
 

@@ -49,10 +49,14 @@ void check_mesh(const Mesh& mesh) {
     for (const uint32_t corner : triangle) EXPECT_LT(corner, mesh.vertices.size());
   }
   const size_t triangles = mesh.triangles.size();
-  if (!mesh.uvs.empty())
-    check_corners(mesh.uv_corners.empty() ? mesh.triangles : mesh.uv_corners, triangles, mesh.uvs.size());
-  if (!mesh.normals.empty())
-    check_corners(mesh.normal_corners.empty() ? mesh.triangles : mesh.normal_corners, triangles, mesh.normals.size());
+  const auto check = [&](const std::vector<Mesh::Corners>& corners, size_t values) {
+    if (!corners.empty()) check_corners(corners, triangles, values);
+    if (corners.empty() && values > 0) {
+      EXPECT_EQ(values, mesh.vertices.size());
+    }
+  };
+  check(mesh.uv_corners, mesh.uvs.size());
+  check(mesh.normal_corners, mesh.normals.size());
   EXPECT_TRUE(mesh.materials.empty() || mesh.materials.size() == triangles);
 }
 

@@ -185,13 +185,15 @@ TEST(Mtl, ErrorsNameTheLineAndTheNearestRightWord) {
 
 /// A folder with an OBJ and what belongs to it.
 class MtlFiles : public testing::Test {
+ public:
+  MtlFiles(const MtlFiles&) = delete;
+  MtlFiles& operator=(const MtlFiles&) = delete;
+
  protected:
   MtlFiles() : folder_(testing::TempDir() + "kerf_mtl_test." + std::to_string(::getpid())) {
     std::filesystem::create_directories(folder_ + "/maps");
   }
   ~MtlFiles() override { std::filesystem::remove_all(folder_); }
-  MtlFiles(const MtlFiles&) = delete;
-  MtlFiles& operator=(const MtlFiles&) = delete;
 
   void write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ + "/" + name, std::ios::binary) << text;

@@ -77,6 +77,9 @@ TEST(Obj, AttributesWithTheNumbersOfTheirVerticesTakeNoArraysOfTheirOwn) {
     EXPECT_EQ(mesh.normals.size(), 3U);
     EXPECT_TRUE(mesh.uv_corners.empty() && mesh.normal_corners.empty());
   }
+  // Not where there are more vertices than attributes: a mesh without such arrays has one for each.
+  EXPECT_EQ(parse(kMapped + "f 1/1 2/2 3/3\n").mesh.uv_corners, (Corners{{0, 1, 2}}));
+  EXPECT_EQ(parse(kMapped + "f 1//1 2//2 2//2\n").mesh.normal_corners, (Corners{{0, 1, 1}}));
   // The same text, but not the same numbers: four vertices, three texture coordinates.
   EXPECT_EQ(parse(kMapped + "f -3/-3 -2/-2 -1/-1\n").mesh.uv_corners, (Corners{{0, 1, 2}}));
 }
@@ -107,6 +110,7 @@ TEST(Obj, CommentsBlanksLineEndsAndContinuedLinesAreRight) {
            kFour + "# C:\\models\\\nf 1 2 3\nf 1 2 3 4 # D:\\\n",
            kFour + "g a # C:\\\nf 1 2 3\nf 1 2 3 4\n",
            kFour + "g a \\\nb c\nf 1 2 3\nf 1 2 3 4\n",
+           kFour + "g a \\\r\nb c\r\nf 1 2 3\r\nf 1 2 3 4\r\n",
        }) {
     SCOPED_TRACE(text);
     const Mesh mesh = parse(text).mesh;

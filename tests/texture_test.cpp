@@ -95,8 +95,8 @@ std::string png_head(uint32_t width, uint32_t height, int bits, int color) {
 /// `rows` are those of the file, each with its filter in front.
 std::string png(uint32_t width, uint32_t height, int bits, int color, const std::string& rows,
                 const std::string& before = "") {
-  return png_head(width, height, bits, color) + before + chunk("tEXt", "Comment\0hand-made") +
-         chunk("IDAT", stored(rows)) + chunk("IEND", "");
+  return png_head(width, height, bits, color) + before + chunk("tEXt", "made by hand") + chunk("IDAT", stored(rows)) +
+         chunk("IEND", "");
 }
 
 std::string bytes_of(std::initializer_list<int> values) {
@@ -212,6 +212,41 @@ TEST(Texture, SizesThatTheBytesCannotHoldAreRefusedBeforeMemoryIsTaken) {
   const size_t frame = large.find("\xFF\xC0");
   large.replace(frame + 5, 4, "\xFF\xFF\xFF\xFF");
   EXPECT_EQ(error_of(large), few);
+}
+
+/// The image without the segments of this marker.
+std::string without_segments(std::string image, char marker) {
+  for (size_t at = 2; image[at + 1] != '\xDA';) {
+    const size_t size = 2 + (static_cast<uint8_t>(image[at + 2]) << 8 | static_cast<uint8_t>(image[at + 3]));
+    if (image[at + 1] == marker) {
+      image.erase(at, size);
+    } else {
+      at += size;
+    }
+  }
+  return image;
+}
+
+TEST(Texture, JpegsOfWhichTheDecoderWouldReadWhatIsNotThereAreRefused) {
+  const std::string image = jpeg(), damaged = "test.png: is damaged: ";
+  EXPECT_EQ(error_of(without_segments(image, '\xDB')), damaged + "a table is missing");
+  EXPECT_EQ(error_of(without_segments(image, '\xC4')), damaged + "a table is missing");
+  EXPECT_EQ(error_of(without_segments(image, '\xC0')), damaged + "a scan is of a colour that the image has not");
+  // 257 codes, in a segment that is long enough for them.
+  const std::string codes = bytes_of({0x11}) + std::string(15, '\x10') + bytes_of({17}) + std::string(257, 'x');
+  std::string many = without_segments(image, '\xC4');
+  many.insert(2, "\xFF\xC4" + big(codes.size() + 2, 2) + codes);
+  EXPECT_EQ(error_of(many), damaged + "a Huffman table is none");
+  // A scan of but the first of three colours: its header has two bytes for each.
+  std::string grey = image;
+  const size_t scan = grey.find("\xFF\xDA");
+  grey.replace(scan + 2, 9, bytes_of({0, 8, 1}) + grey.substr(scan + 5, 2));
+  EXPECT_EQ(error_of(grey), damaged + "a colour has no pixels");
+  // What follows a progressive frame is a refinement of nothing.
+  std::string refined = image;
+  refined[refined.find("\xFF\xC0") + 1] = '\xC2';
+  refined[refined.find("\xFF\xDA") + 13] = '\x10';
+  EXPECT_EQ(error_of(refined), damaged + "a scan refines a colour that has no pixels yet");
 }
 
 TEST(Texture, MoreThanTwoToThe28PixelsAreRefused) {

@@ -29,12 +29,13 @@ TEST(YamlErrors, WhatYamlCppLetsPassSilentlyIsRefused) {
   expect_error("camera: {}\n^camera: {}\n", {"second 'camera'", "line 1"});
   expect_error("camera:\n  ^<<: {fov: 4}\n", {"merge keys"});
   expect_error("camera:\n  fov: ^!!float 4\n", {"tags"});
+  expect_error("camera: ^!!map {fov: 4}\n", {"tags"});
   expect_error("camera: ^!include x.yaml\n", {"tags", "include"});
   expect_error("a: &a [1, ^*a]\n", {"alias"});
   expect_error("camera:\n  ^[1, 2]: 3\n", {"expected a key of the camera", "a list of 2"});
   expect_error("? \n^: 3\n", {"expected a key"});
   expect_error("camera: {}\n^materials\n", {"a key without a ':' behind it"});
-  expect_error("camera: {fov: 4, ^up}\n", {"a key without a ':' behind it"});
+  expect_error("camera: {fov: 4, ^up}\n", {"up: expected three numbers, found nothing"});
   expect_error("camera: {}\n^%geometry: []\n", {"directives"});
   expect_error("^%TAG ! x\n---\ncamera: {}\n", {"directives"});
   expect_error("settings: {structure: ^\"a\\0b\"}\n", {"zero byte"});

@@ -1,12 +1,33 @@
 #include "kerf/io/assimp_guard.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cstdlib>
+#include <stdexcept>
 #include <string_view>
 
 #include "kerf/base/error.h"
 #include "kerf/io/message.h"
+
+namespace {
+thread_local int readings = 0;  // of this library, in this thread
+}
+
+// Assimp calls this where an assertion fails, prints and aborts. It has no handler to set before its version 5.3, but
+// as a function of a shared library it may be replaced. Where the linker finds Assimp's own first, that remains.
+namespace Assimp {
+[[gnu::weak]] void aiAssertViolation(const char* condition, const char* file, int line);
+
+void aiAssertViolation(const char* condition, const char* file, int line) {
+  if (readings > 0) throw std::runtime_error(fmt::format("{}:{}: not so: {}", file, line, condition));
+  using Original = void (*)(const char*, const char*, int);
+  constexpr const char* kName = "_ZN6Assimp17aiAssertViolationEPKcS1_i";
+  if (const auto original = reinterpret_cast<Original>(::dlsym(RTLD_NEXT, kName))) original(condition, file, line);
+  std::abort();  // it was called by someone else, who expects this
+}
+}  // namespace Assimp
 
 namespace kerf {
 namespace {
@@ -65,6 +86,9 @@ void check_off(std::string_view text, const std::string& path) {
 }
 
 }  // namespace
+
+AssimpAssertions::AssimpAssertions() { ++readings; }
+AssimpAssertions::~AssimpAssertions() { --readings; }
 
 void check_for_assimp(std::span<const char> bytes, const std::string& path) {
   const std::string_view text(bytes.data(), bytes.size());

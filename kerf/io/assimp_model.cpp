@@ -181,13 +181,30 @@ void unregister_loud(Assimp::Importer& importer) {
   if (importer.UnregisterLoader(loud) == aiReturn_SUCCESS) delete loud;
 }
 
+/// Some readers say of a mesh that it has polygons where it has none, over which the step that cuts them ends the
+/// program.
+void repair_primitive_types(const aiScene& scene) {
+  for (unsigned int i = 0; i < scene.mNumMeshes; ++i) {
+    aiMesh* mesh = scene.mMeshes[i];
+    if (mesh == nullptr) continue;
+    unsigned int types = 0;
+    for (unsigned int k = 0; k < mesh->mNumFaces; ++k) {
+      const unsigned int corners = mesh->mFaces[k].mNumIndices;
+      if (corners > 0) types |= AI_PRIMITIVE_TYPE_FOR_N_INDICES(corners);
+    }
+    mesh->mPrimitiveTypes = types == 0 ? unsigned{aiPrimitiveType_POINT} : types;  // 0 would be guessed at
+  }
+}
+
 const aiScene* import(Assimp::Importer& importer, const std::string& path) {
   unregister_loud(importer);
   // Joining compares all that a vertex has, so what is not used goes first.
   importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
                               aiComponent_COLORS | aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_BONEWEIGHTS);
-  return importer.ReadFile(path, aiProcess_RemoveComponent | aiProcess_Triangulate | aiProcess_TransformUVCoords |
-                                     aiProcess_JoinIdenticalVertices);
+  const aiScene* scene = importer.ReadFile(path, aiProcess_RemoveComponent | aiProcess_TransformUVCoords);
+  if (scene == nullptr) return nullptr;
+  repair_primitive_types(*scene);
+  return importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_JoinIdenticalVertices);
 }
 
 }  // namespace
@@ -198,6 +215,7 @@ Model read_with_assimp(const std::string& path) {
     throw Error(ErrorCode::file, path, "is not a regular file");  // Assimp goes back and forth in what it reads
   }
   check_for_assimp(MappedFile(path).bytes(), path);  // and says it better than Assimp where there is no such file
+  const AssimpAssertions assertions;
   try {
     Assimp::Importer importer;
     const aiScene* scene = import(importer, path);

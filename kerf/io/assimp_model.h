@@ -9,6 +9,9 @@ namespace kerf {
 
 /// Reads any format that Assimp knows, its nodes placed by their transforms, with colours, base colour textures,
 /// emission and smooth normals. Throws Error (file) with the path as place.
+///
+/// The readers are Assimp's own, and not all of them stand damaged files: one of a seldom used format may take much
+/// time or memory, or end the program. OpenGEX is left out, whose reader prints.
 Model read_with_assimp(const std::string& path);
 
 /// The ends of names that Assimp reads, such as ".fbx", in order.

@@ -13,7 +13,6 @@ Model read_gltf(const std::string& path) {
   const MappedFile mapped(path);
   GltfFile file = load_gltf(open_gltf_container(mapped.bytes(), path), path);
   const GltfScene scene = walk_gltf_scene(file);
-  if (!file.json.animations.empty()) file.notes.add("animations have no effect");
   Model model;
   GltfMaterials materials(file);
   model.mesh = GltfMeshes(file, materials).copy(scene.instances);

@@ -63,6 +63,7 @@ std::span<const char> GltfFile::view(int64_t number, std::string_view user) {
 GltfFile load_gltf(const GltfContainer& container, const std::string& path) {
   GltfText text = take_gltf_apart(container.json, path);
   GltfFile file{path, {}, {path, std::move(text.buffers), std::move(text.images), container.binary}, {}};
+  if (text.has_animations) file.notes.add("animations have no effect");
   if (text.json.size() > std::numeric_limits<int32_t>::max()) file.fail("has more than 2 GB of text");
   std::string error, warning;
   bool is_read = false;

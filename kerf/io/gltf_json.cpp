@@ -16,6 +16,11 @@ namespace {
 
 constexpr int kDeepest = 100;
 
+// What tinygltf is given of the members of the root.
+constexpr std::string_view kKept[] = {"accessors", "asset",    "bufferViews", "cameras", "extensionsRequired",
+                                      "materials", "meshes",   "nodes",       "scene",   "extensionsUsed",
+                                      "scenes",    "textures", "samplers"};
+
 int hex_digit(char c) {
   if ('0' <= c && c <= '9') return c - '0';
   if ('a' <= c && c <= 'f') return c - 'a' + 10;
@@ -64,7 +69,8 @@ class Scanner {
     value(0);
     skip_space();
     if (at_ < text_.size() && text_[at_] != '\0') fail("expected the end of the file");
-    if (!version_.empty() && !version_.starts_with("2.")) {
+    if (version_.empty()) throw Error(ErrorCode::file, path_, "is no glTF 2.0: it has no asset.version");
+    if (!version_.starts_with("2.")) {
       throw Error(ErrorCode::file, path_,
                   fmt::format("is glTF of version {}; only 2 can be read", printable(version_)));
     }
@@ -111,7 +117,9 @@ class Scanner {
       check(rule, token, {});
       begin_container(token);
       c == '{' ? object(depth + 1) : array(depth + 1);
-      if (depth == 1 && (pattern_ == "buffers" || pattern_ == "images")) cuts_.push_back({begin, at_});
+      if (depth == 1 && std::find(std::begin(kKept), std::end(kKept), pattern_) == std::end(kKept)) {
+        cuts_.push_back({begin, at_});
+      }
       return;
     }
     if (c == '"') {
@@ -267,6 +275,7 @@ class Scanner {
 
   void begin_container(Token token) {
     if (token != Token::object) return;
+    if (pattern_ == "animations[]") result_.has_animations = true;
     if (pattern_ == "buffers[]") result_.buffers.emplace_back();
     if (pattern_ == "images[]") result_.images.emplace_back();
   }
@@ -287,7 +296,7 @@ class Scanner {
   void cut() {
     size_t from = 0;
     for (const auto& [begin, end] : cuts_) {
-      result_.json.append(text_.substr(from, begin - from)).append("[]");
+      result_.json.append(text_.substr(from, begin - from)).append("null");
       from = end;
     }
     result_.json.append(text_.substr(from));

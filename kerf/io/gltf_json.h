@@ -22,9 +22,12 @@ struct GltfImage {
 
 /// The text of a glTF, taken apart. Views are into the text that was given.
 struct GltfText {
-  std::string json;  ///< without what buffers and images hold, which may be much and which tinygltf would copy
+  /// What tinygltf is to read: without buffers and images, which may be much and which it would copy, and without all
+  /// that is not read from a glTF, in which it would find fault (a skin need not have inverseBindMatrices).
+  std::string json;
   std::vector<GltfBuffer> buffers;
   std::vector<GltfImage> images;
+  bool has_animations = false;
 };
 
 /// Looks through the JSON of a glTF before tinygltf does, which passes over what has the wrong type, cuts large numbers

@@ -261,13 +261,13 @@ void check_counts(const ObjCounts& total, const std::string& name) {
   }
 }
 
-/// Gives back the array of corners where the vertices' own numbers serve as well, and the attribute where no face has
-/// it.
+/// Gives back the array of corners where the vertices' own numbers serve as well, which takes an attribute for each
+/// vertex, and the attribute where no face has it.
 template <class T>
 void drop_needless(const Mesh& mesh, const ObjAttributeUse& use, std::vector<T>& values,
                    std::vector<Mesh::Corners>& corners) {
   if (!use.present) values = {};
-  if (corners == mesh.triangles) corners = {};
+  if (values.size() == mesh.vertices.size() && corners == mesh.triangles) corners = {};
 }
 
 }  // namespace
@@ -277,14 +277,16 @@ Mesh read_obj_geometry(std::span<const char> text, std::span<const ObjChunk> chu
   const ObjCounts total = total_counts(chunks);
   check_counts(total, name);
   const ObjAttributeUse uvs = joined_use(chunks, &ObjChunk::uvs), normals = joined_use(chunks, &ObjChunk::normals);
-  const auto needs_corners = [](const ObjAttributeUse& use) { return use.present && (use.missing || use.differs); };
+  const auto needs_corners = [&](const ObjAttributeUse& use, uint64_t count) {
+    return use.present && (use.missing || use.differs || count != total.vertices);
+  };
   Mesh mesh;
   mesh.vertices.resize(total.vertices);
   mesh.uvs.resize(total.uvs);
   mesh.normals.resize(total.normals);
   mesh.triangles.resize(total.triangles);
-  if (needs_corners(uvs)) mesh.uv_corners.resize(total.triangles);
-  if (needs_corners(normals)) mesh.normal_corners.resize(total.triangles);
+  if (needs_corners(uvs, total.uvs)) mesh.uv_corners.resize(total.triangles);
+  if (needs_corners(normals, total.normals)) mesh.normal_corners.resize(total.triangles);
 
   std::vector<std::optional<ObjFault>> faults(chunks.size());
   std::vector<uint32_t> passed_over(chunks.size());

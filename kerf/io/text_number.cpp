@@ -58,7 +58,8 @@ constexpr double kPowers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e
 
 /// What nearly all numbers of files are: few digits, a small exponent. One exactly rounded operation of doubles gives
 /// the nearest double, and that rounds to the nearest float unless it lies in the middle between two, where the first
-/// rounding may have been what put it there. False where this way is not open.
+/// rounding may have been what put it there. All such numbers are zero or in the range of normal floats. False where
+/// this way is not open.
 bool convert_fast(const Decimal& decimal, float& value) {
   constexpr int64_t kMostPower = 22;
   if (decimal.digits > 19 || decimal.mantissa >> 53 != 0) return false;
@@ -69,8 +70,6 @@ bool convert_fast(const Decimal& decimal, float& value) {
   constexpr uint64_t kDropped = (uint64_t{1} << 29) - 1;  // the bits that a double has more than a float
   constexpr uint64_t kMiddle = uint64_t{1} << 28;
   if ((std::bit_cast<uint64_t>(wide) & kDropped) == kMiddle) return false;
-  const bool is_normal = wide > std::numeric_limits<float>::min() && wide < std::numeric_limits<float>::max();
-  if (!is_normal && wide != 0) return false;
   value = static_cast<float>(wide);
   return true;
 }

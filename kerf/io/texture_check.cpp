@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "kerf/io/byte_order.h"
+#include "kerf/io/jpeg_check.h"
 #include "kerf/io/message.h"
 
 namespace kerf {
@@ -17,7 +18,6 @@ constexpr const char* kTooFewBytes = "has fewer bytes than so many pixels can be
 
 uint64_t little16(const char* from) { return load_number<uint16_t>(from, !kLittleEndianHost); }
 uint64_t little32(const char* from) { return load_number<uint32_t>(from, !kLittleEndianHost); }
-uint64_t big16(const char* from) { return load_number<uint16_t>(from, kLittleEndianHost); }
 uint64_t big32(const char* from) { return load_number<uint32_t>(from, kLittleEndianHost); }
 uint8_t byte(const char* from) { return static_cast<uint8_t>(*from); }
 
@@ -74,47 +74,6 @@ std::string png_fault(std::string_view bytes) {
   return kCutShort;
 }
 
-// --- JPEG -----------------------------------------------------------------------------------------------------------
-
-bool is_frame(uint8_t marker) {
-  return 0xC0 <= marker && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
-}
-
-/// Where the next marker begins in or after the packed pixels at `at`.
-size_t next_marker(std::string_view bytes, size_t at) {
-  for (; at + 1 < bytes.size(); ++at) {
-    const uint8_t next = byte(bytes.data() + at + 1);
-    const bool is_restart = 0xD0 <= next && next <= 0xD7;
-    if (byte(bytes.data() + at) == 0xFF && next != 0 && next != 0xFF && !is_restart) return at;
-  }
-  return bytes.size();
-}
-
-std::string jpeg_fault(std::string_view bytes) {
-  constexpr uint64_t kMostPacking = 1024;  // a bit for a block of 8 x 8 pixels, in each of few passes
-  size_t at = 2;
-  while (bytes.size() - at >= 2) {
-    if (byte(bytes.data() + at) != 0xFF) return fmt::format("is damaged: no marker stands at byte {}", at);
-    const uint8_t marker = byte(bytes.data() + at + 1);
-    if (marker == 0xD9) return {};
-    if (marker == 0xFF) {  // may fill the space between segments
-      ++at;
-      continue;
-    }
-    if (bytes.size() - at < 4) return kCutShort;
-    const uint64_t size = big16(bytes.data() + at + 2);
-    if (size < 2) return fmt::format("is damaged: the segment at byte {} has no size", at);
-    if (size > bytes.size() - at - 2) return kCutShort;
-    if (is_frame(marker) && size >= 8) {
-      const uint64_t pixels = big16(bytes.data() + at + 5) * big16(bytes.data() + at + 7);
-      if (pixels / kMostPacking > bytes.size()) return kTooFewBytes;
-    }
-    at += 2 + size;
-    if (marker == 0xDA) at = next_marker(bytes, at);
-  }
-  return kCutShort;
-}
-
 // --- BMP ------------------------------------------------------------------------------------------------------------
 
 /// Whether a pixel has a number that the palette has not: the decoder would show whatever lies in memory there.
@@ -134,12 +93,12 @@ std::string bmp_fault(std::string_view bytes) {
   if (bytes.size() < 26) return kCutShort;
   const char* const p = bytes.data();
   const uint64_t offset = little32(p + 10), header = little32(p + 14);
-  uint64_t width = 0, height = 0, bits = 0, packing = 0, color_size = 4;
+  uint64_t width = 0, height = 0, bits = 0, packing = 0;
   if (header == 12) {
     width = little16(p + 18);
     height = little16(p + 20);
     bits = little16(p + 24);
-    color_size = 3;
+    if (bits < 16) return "has a palette of the oldest kind, which is not read";  // the decoder takes it for shorter
   } else {
     if (bytes.size() < 54) return kCutShort;
     width = little32(p + 18);
@@ -153,7 +112,7 @@ std::string bmp_fault(std::string_view bytes) {
   if (offset > bytes.size() || (row != 0 && height > (bytes.size() - offset) / row)) return kCutShort;
   if (bits == 1 || bits == 4 || bits == 8) {
     if (offset < 14 + header) return "is damaged: its pixels begin in its header";
-    const uint64_t colors = (offset - 14 - header) / color_size;
+    const uint64_t colors = (offset - 14 - header) / 4;
     if (leaves_palette(bytes.substr(offset, height * row), row, width, bits, colors)) {
       return fmt::format("is damaged: it has pixels beyond its palette of {} colours", colors);
     }

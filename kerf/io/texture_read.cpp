@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <limits>
 #include <memory>
 
@@ -20,6 +21,10 @@
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC  // other libraries bring a copy of their own
 #define STBI_NO_STDIO
+// Zeros, so that a damaged image looks the same whenever it is read.
+#define STBI_MALLOC(size) std::calloc(1, size)
+#define STBI_REALLOC(memory, size) std::realloc(memory, size)
+#define STBI_FREE(memory) std::free(memory)
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
 #define STBI_ONLY_TGA
@@ -36,6 +41,11 @@ bool ends_like_texture(std::string name) {
     if (name.ends_with(extension)) return true;
   }
   return false;
+}
+
+[[noreturn]] void fail_decoding(const std::string& name) {
+  const char* const reason = stbi_failure_reason();  // not all failures have one
+  throw Error(ErrorCode::file, name, fmt::format("cannot be decoded ({})", reason == nullptr ? "damaged" : reason));
 }
 
 }  // namespace
@@ -56,16 +66,15 @@ Texture decode_texture(std::span<const char> bytes, const std::string& name) {
   const auto* const data = reinterpret_cast<const stbi_uc*>(bytes.data());
   const int size = static_cast<int>(bytes.size());
   int width = 0, height = 0, channels = 0;
-  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) {
-    fail(fmt::format("cannot be decoded ({})", stbi_failure_reason()));
-  }
+  stbi__g_failure_reason = nullptr;  // that of the last image
+  if (stbi_info_from_memory(data, size, &width, &height, &channels) == 0) fail_decoding(name);
   if (width <= 0 || height <= 0) fail("has no pixels");
   if (static_cast<uint64_t>(width) * static_cast<uint64_t>(height) > kMostPixels) {
     fail(fmt::format("has {} x {} pixels; at most 2^28 are read", width, height));
   }
   const std::unique_ptr<stbi_uc, void (*)(void*)> rgb(stbi_load_from_memory(data, size, &width, &height, &channels, 3),
                                                       stbi_image_free);
-  if (rgb == nullptr) fail(fmt::format("cannot be decoded ({})", stbi_failure_reason()));
+  if (rgb == nullptr) fail_decoding(name);
   Texture texture{static_cast<uint32_t>(width), static_cast<uint32_t>(height), {}};
   texture.rgb.assign(rgb.get(), rgb.get() + size_t{texture.width} * texture.height * 3);
   return texture;

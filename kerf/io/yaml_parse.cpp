@@ -48,13 +48,13 @@ class TreeBuilder : public YAML::EventHandler {
     return std::move(tree_);
   }
 
-  void OnDocumentStart(const YAML::Mark& mark) override {  // NOLINT(readability-identifier-naming)
+  void OnDocumentStart(const YAML::Mark& mark) override {
     if (has_document_) refuse(mark, "a second document; a scene is one");
     has_document_ = true;
   }
-  void OnDocumentEnd() override {}  // NOLINT(readability-identifier-naming)
+  void OnDocumentEnd() override {}
 
-  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {  // NOLINT(readability-identifier-naming)
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     YamlTree::Use use = place_of(mark);
     // yaml-cpp's mark of what is not there is where the next thing begins, maybe lines below.
     if (is_map_value()) {
@@ -68,8 +68,8 @@ class TreeBuilder : public YAML::EventHandler {
     add(use);
   }
 
-  // NOLINTNEXTLINE(readability-identifier-naming)
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    if (anchor >= anchors_.size()) refuse(mark, "an alias of nothing");
     YamlTree::Use use = place_of(mark);
     use.node = anchors_[anchor];
     const auto is_it = [&](const Open& open) { return open.use.node == use.node; };
@@ -77,7 +77,6 @@ class TreeBuilder : public YAML::EventHandler {
     add(use);
   }
 
-  // NOLINTNEXTLINE(readability-identifier-naming)
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                 const std::string& value) override {
     refuse_tag(mark, tag);
@@ -90,19 +89,17 @@ class TreeBuilder : public YAML::EventHandler {
     add(use);
   }
 
-  // NOLINTNEXTLINE(readability-identifier-naming)
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                        YAML::EmitterStyle::value style) override {
     open(mark, tag, anchor, YamlKind::sequence, style != YAML::EmitterStyle::Flow);
   }
-  void OnSequenceEnd() override { close(); }  // NOLINT(readability-identifier-naming)
+  void OnSequenceEnd() override { close(); }
 
-  // NOLINTNEXTLINE(readability-identifier-naming)
   void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
                   YAML::EmitterStyle::value) override {
     open(mark, tag, anchor, YamlKind::map, false);
   }
-  void OnMapEnd() override { close(); }  // NOLINT(readability-identifier-naming)
+  void OnMapEnd() override { close(); }
 
  private:
   /// A sequence or map of which not all is known.

@@ -10,7 +10,7 @@
 namespace kerf {
 namespace {
 
-constexpr double kPixels = 1e5;
+constexpr double kPixels = 3e4;
 constexpr int kRuns = 5;
 
 /// Camera rays, then a cosine-distributed one from each of their hits.

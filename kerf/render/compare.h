@@ -21,7 +21,7 @@ struct StructureCost {
 };
 
 /// Traces the same rays through several structures over one scene: a camera ray for each pixel of a picture of some
-/// 100,000 pixels, and a ray in a random direction from each hit.
+/// 30,000 pixels, and a ray in a random direction from each hit.
 std::vector<StructureCost> compare_structures(const SceneDescription& description, const Camera& camera, double aspect,
                                               std::span<const BuildOptions> structures);
 

@@ -6,6 +6,7 @@
 #include "kerf/base/error.h"
 #include "kerf/render/camera.h"
 #include "kerf/render/color.h"
+#include "kerf/render/frame.h"
 #include "kerf/render/texture_lookup.h"
 
 namespace kerf {
@@ -75,8 +76,8 @@ bool corner_numbers(const std::vector<Mesh::Corners>& corners, const Mesh& mesh,
 Vec3f interpolated_normal(const Mesh& mesh, const Hit& hit, Vec3f flat) {
   Mesh::Corners k;
   if (mesh.normals.empty() || !corner_numbers(mesh.normal_corners, mesh, hit.primitive, k)) return flat;
-  const Vec3f smooth =
-      mesh.normals[k[0]] * (1 - hit.u - hit.v) + mesh.normals[k[1]] * hit.u + mesh.normals[k[2]] * hit.v;
+  const Vec3f smooth = normalized(mesh.normals[k[0]]) * (1 - hit.u - hit.v) + normalized(mesh.normals[k[1]]) * hit.u +
+                       normalized(mesh.normals[k[2]]) * hit.v;
   const float length = std::sqrt(dot(smooth, smooth));
   return length > 0 && std::isfinite(length) ? smooth / length : flat;
 }

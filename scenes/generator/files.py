@@ -1,5 +1,6 @@
 """Writes a scene: a YAML file, an OBJ file for each material that has a mesh, and PLY to measure with."""
 
+import re
 import struct
 import textwrap
 
@@ -38,7 +39,7 @@ def obj_text(scene, material):
         n = len(vertices)
         lines += ["v " + vector(scene.world(p)) for p in vertices]
         if normals:
-            lines += ["vn " + vector(scene.turned(p), 3) for p in normals]
+            lines += ["vn " + vector(scene.turned(p), 2) for p in normals]
             lines += ["f " + " ".join(f"{i - n}//{i - n}" for i in face) for face in faces]
         else:
             lines += ["f " + " ".join(str(i - n) for i in face) for face in faces]
@@ -73,10 +74,17 @@ def yaml_text(scene):
     for comment, shape in scene.shapes:
         if comment:
             lines.append(f"  # {comment}")
-        lines.append(f"  - {_flow(shape)}")
+        lines += _wrapped(f"  - {_flow(shape)}")
     for material in scene.meshes:
         lines.append(f"  - {_flow({'type': 'obj', 'material': material, 'file': model_path(scene, material)})}")
     return "\n".join(lines) + "\n"
+
+
+def _wrapped(line):
+    """A long line in several, vectors in one piece."""
+    together = re.sub(r"\[[^]]*\]", lambda vector: vector[0].replace(" ", "\0"), line)
+    pieces = textwrap.wrap(together, 120, subsequent_indent="      ", break_on_hyphens=False)
+    return [piece.replace("\0", " ") for piece in pieces]
 
 
 def _flow(keys):

@@ -103,6 +103,24 @@ class Mesh:
                     faces.append(face)
             self.add(vertices, faces, normals if smooth else None)
 
+    def loft(self, rings, closed=False):
+        """A smooth skin over rings of equally many points, each ring counter-clockwise seen from the ring before;
+        `closed`: the last ring joins the first."""
+        count, n = len(rings), len(rings[0])
+        vertices = [p for ring in rings for p in ring]
+        faces = []
+        for i in range(count if closed else count - 1):
+            a, b = i * n, (i + 1) % count * n
+            faces += [(a + k, a + (k + 1) % n, b + (k + 1) % n, b + k) for k in range(n)]
+        self.add(vertices, faces, _smooth_normals(vertices, faces))
+
+    def moved(self, place, turn):
+        """The same mesh with `place` applied to all points and `turn` to all normals."""
+        mesh = Mesh()
+        for vertices, faces, normals in self.parts:
+            mesh.add([place(p) for p in vertices], faces, normals and [turn(p) for p in normals])
+        return mesh
+
     def ribbon(self, left, right):
         """A strip between two lines of points, such as a leaf; the last points may be the same for a tip."""
         n = len(left)
@@ -116,6 +134,16 @@ class Mesh:
         """Straight strings, each from a start to its end."""
         for a, b in zip(starts, ends):
             self.tube(a, b, radius, sides, caps=False)
+
+
+def _smooth_normals(vertices, faces):
+    sums = [(0.0, 0.0, 0.0)] * len(vertices)
+    for face in faces:
+        a, b, c, d = (vertices[i] for i in face)
+        normal = cross(subtract(c, a), subtract(d, b))
+        for i in face:
+            sums[i] = add(sums[i], normal)
+    return [unit(normal) for normal in sums]
 
 
 def _runs(profile):
@@ -136,7 +164,7 @@ def _slopes(run):
 
 
 def circle(center, radius, count, axis=UP, start=0.0):
-    """Points around a circle, counter-clockwise seen against its axis... from `start` in turns."""
+    """Points around a circle, clockwise seen against its axis, from `start` in turns."""
     side, top = frame(axis)
     angles = [2 * math.pi * (start + k / count) for k in range(count)]
     return [along(center, (side, radius * math.cos(a)), (top, radius * math.sin(a))) for a in angles]
@@ -158,8 +186,19 @@ def clipped_segment(a, b, outline):
             high = min(high, at_a / (at_a - at_b))
     if low >= high:
         return None
-    point = lambda t: (a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t)
-    return point(low), point(high)
+    return tuple((a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t) for t in (low, high))
+
+
+def curve(points, pieces):
+    """A smooth line through points (Catmull-Rom), each stretch in so many pieces."""
+    line = []
+    for i in range(len(points) - 1):
+        before, a, b, after = points[max(i - 1, 0)], points[i], points[i + 1], points[min(i + 2, len(points) - 1)]
+        for k in range(pieces):
+            t = k / pieces
+            weights = (-t + 2 * t**2 - t**3, 2 - 5 * t**2 + 3 * t**3, t + 4 * t**2 - 3 * t**3, t**3 - t**2)
+            line.append(tuple(sum(w * p[j] for w, p in zip(weights, (before, a, b, after))) / 2 for j in range(3)))
+    return line + [points[-1]]
 
 
 def spread(first, last, count):

@@ -26,7 +26,7 @@ def scene():
     _light(scene)
     random = Random(7)
     building.build(scene, random)
-    building.ramp(scene)
+    building.ramp(scene, random)
     building.spiral_stair(scene)
     things.furnish(scene, random)
     scene.look(eye=(-1.2, 1.6, 3.4), look_at=(12.0, 2.35, 5.4), fov=54)
@@ -54,10 +54,10 @@ def _materials(scene):
         "gravel": (0.52, 0.48, 0.41),
     }.items():
         scene.material(name, "lambertian", albedo=albedo)
-    scene.material("concrete", "metal", albedo=(0.46, 0.45, 0.43), roughness=0.3, metallic=0.15)
-    scene.material("concrete_warm", "metal", albedo=(0.49, 0.47, 0.44), roughness=0.3, metallic=0.15)
-    scene.material("steel", "metal", albedo=(0.62, 0.62, 0.63), roughness=0.35)
-    scene.material("brass", "metal", albedo=(0.90, 0.66, 0.30), roughness=0.1)
+    scene.material("concrete", "metal", albedo=(0.46, 0.45, 0.43), roughness=0.38, metallic=0.15)
+    scene.material("concrete_warm", "metal", albedo=(0.49, 0.47, 0.44), roughness=0.38, metallic=0.15)
+    scene.material("steel", "metal", albedo=(0.62, 0.62, 0.63), roughness=0.45)
+    scene.material("brass", "metal", albedo=(0.90, 0.66, 0.30), roughness=0.14)
     scene.material("glass", "glass", albedo=(1, 1, 1), refractive_index=1.5)
     scene.material("bulb", "constant", albedo=(4.0, 2.6, 1.4))
     scene.material("sun", "light", emission=(220000, 177000, 122000))

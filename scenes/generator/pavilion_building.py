@@ -31,7 +31,7 @@ def build(scene, random):
 
 def _roof(scene, random):
     timbers = [scene.mesh(name) for name in ("oak", "oak_light", "oak_dark")]
-    for x in spread(-1.6, LENGTH + 1.6, 92):  # fins across
+    for x in spread(-1.6, LENGTH + 1.6, 80):  # fins across
         start, end = roof(x, -1.3, -0.12), roof(x, WIDTH + 1.5, -0.12)
         random.choices(timbers, (5, 4, 1))[0].beam(start, end, 0.05, 0.2)
     for z in spread(-0.9, WIDTH + 1.1, 14):  # purlins along
@@ -63,8 +63,11 @@ def _columns(scene):
 
 def _lattice(scene):
     """Battens crossing on the open side, from the plinth to the sloping eave."""
-    bottom, gap = 0.32, 0.55
-    top = lambda x: roof(x, WIDTH)[1] - 0.2
+    bottom, gap = 0.32, 0.75
+
+    def top(x):
+        return roof(x, WIDTH)[1] - 0.2
+
     outline = [(-1.2, bottom), (LENGTH + 1.2, bottom), (LENGTH + 1.2, top(LENGTH + 1.2)), (-1.2, top(-1.2))]
     lean = 8.0 / math.tan(math.radians(57))  # of a batten that rises by 8
     for layer, name in ((0, "oak"), (1, "oak_light")):
@@ -91,9 +94,9 @@ def _wall_top(x):
 
 def _walls(scene):
     """A plaster wall that follows the roof with an open strip of light above it."""
-    x0, x1, z = -2.5, LENGTH + 1.0, 0.0
+    x0, x1, z = -2.5, LENGTH + 1.0, -0.35
     outline = [(x0, -0.15, z), (x1, -0.15, z), (x1, _wall_top(x1), z), (x0, _wall_top(x0), z)]
-    scene.mesh("plaster").extrusion([(x, y, z) for x, y, z in outline], (0, 0, -0.35))
+    scene.mesh("plaster").extrusion(outline, (0, 0, 0.35))
     coping = scene.mesh("black")
     coping.beam((x0, _wall_top(x0), -0.17), (x1, _wall_top(x1), -0.17), 0.39, 0.04)
 
@@ -144,25 +147,27 @@ def railing(scene, start, end, height=1.0, cables=8):
     for k in range(cables):
         rise = (0, 0.1 + (height - 0.2) * k / (cables - 1), 0)
         steel.tube(add(start, rise), add(end, rise), 0.004, 4, caps=False)
-    overhang = unit(subtract(end, start))
-    rise = (0, height, 0)
-    scene.mesh("oak_light").beam(along(add(start, rise), (overhang, -0.05)), along(add(end, rise), (overhang, 0.05)), 0.06, 0.04)
+    heading, rise = unit(subtract(end, start)), (0, height, 0)
+    rail = along(add(start, rise), (heading, -0.05)), along(add(end, rise), (heading, 0.05))
+    scene.mesh("oak_light").beam(*rail, 0.06, 0.04)
 
 
-def ramp(scene):
+def ramp(scene, random):
     """Along the plaster wall from the floor to the gallery."""
     width, thick = 1.45, 0.18
     near, far = RAMP_NEAR, DECK_NEAR
     z = 0.08
     outline = [(near, 0, z), (near + 0.6, 0, z), (far, DECK - thick - 0.03, z), (far, DECK - 0.03, z)]
-    scene.mesh("concrete").extrusion([(p[0], p[1], z + width) for p in outline], (0, 0, -width))
+    scene.mesh("concrete").extrusion(outline, (0, 0, width))
     slope = unit((far - near, DECK, 0))
     for z_rail in (z + 0.05, z + width - 0.05):
         railing(scene, (near + 0.15, 0.03, z_rail), (far - 0.02, DECK - 0.03, z_rail))
-    boards = 150
+    boards = 130
     for i in range(boards):  # treads of timber across the ramp
         foot = mix((near + 0.1, 0.03, 0), (far - 0.05, DECK - 0.012, 0), (i + 0.5) / boards)
-        scene.mesh("oak").beam((foot[0], foot[1], z + 0.12), (foot[0], foot[1], z + width - 0.12), 0.075, 0.03, up=(-slope[1], slope[0], 0))
+        timber = scene.mesh(random.choice(("oak", "oak", "oak_light")))
+        start, end = (foot[0], foot[1], z + 0.12), (foot[0], foot[1], z + width - 0.12)
+        timber.beam(start, end, 0.084, 0.03, up=(-slope[1], slope[0], 0))
     for x in (7.0, 10.0, 13.0):
         y = (x - near) / (far - near) * DECK - thick
         scene.mesh("black").tube((x, 0, z + width / 2), (x, y, z + width / 2), 0.06, 12, smooth=True)
@@ -173,14 +178,13 @@ def spiral_stair(scene):
     x, _, z = STAIR
     steps, turn = 15, math.radians(27.0)
     radius = 1.2
-    last = math.radians(-90.0)  # of the landing's edge... toward -z
+    first = -steps * turn  # the last tread ends where the bridge begins
 
     def at(r, angle, y):
         return (x + r * math.cos(angle), y, z + r * math.sin(angle))
 
     black, steel, timber = scene.mesh("black"), scene.mesh("steel"), scene.mesh("oak_light")
     black.tube((x, 0, z), (x, DECK + 1.0, z), 0.07, 16, smooth=True)
-    first = math.radians(0.0) - steps * turn
     rail = []
     for i in range(steps):
         y = DECK * (i + 1) / steps

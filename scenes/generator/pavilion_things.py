@@ -4,8 +4,8 @@ import math
 
 from generator import plants
 from generator.mesh import circle, spread
-from generator.pavilion_building import DECK, DECK_NEAR, DECK_RIGHT, LENGTH, WIDTH, roof
-from generator.vectors import add, along, mix, turned_about_y
+from generator.pavilion_building import DECK_NEAR, DECK_RIGHT, LENGTH, WIDTH, roof
+from generator.vectors import add, along, turned_about_y
 
 
 class Placed:
@@ -58,8 +58,8 @@ def _table(scene, random):
             foot = (x + random.uniform(-0.06, 0.06), 0.012, side * random.uniform(0.72, 0.84))
             turn = degrees + (0 if side > 0 else 180) + random.uniform(-14, 14)
             _chair(scene, colours[2 * i + (side > 0)], legs.at(foot), turn)
-    for x in (-1.35, 0.0, 1.35):
-        _lamp(scene, legs.at((x, 2.1, 0)))
+    for x, comment in ((-1.35, "Bulbs of the lamps over the table"), (0.0, ""), (1.35, "")):
+        _lamp(scene, legs.at((x, 2.1, 0)), comment)
     _tableware(scene, center)
 
 
@@ -81,7 +81,7 @@ def _chair(scene, material, foot, degrees):
     wood.mesh.pipe([wood.at(p) for p in arc], 0.017, 8, smooth=True)
 
 
-def _lamp(scene, center):
+def _lamp(scene, center, comment):
     """A lamp of strings between two rings, turned against each other, hung from the roof."""
     x, y, z = center
     count = 44
@@ -94,12 +94,13 @@ def _lamp(scene, center):
     black.pipe(circle((x, y - 0.24, z), 0.32, 40), 0.006, 6, closed=True, smooth=True)
     black.pipe(circle((x, y + 0.24, z), 0.2, 32), 0.006, 6, closed=True, smooth=True)
     black.tube((x, y + 0.05, z), roof(x, z), 0.004, 4)
-    scene.sphere("bulb", (x, y, z), 0.05, "A lamp's bulb")
+    scene.sphere("bulb", (x, y, z), 0.05, comment)
 
 
 def _tableware(scene, center):
     x, y, z = add(center, (0, 0.76, 0))
-    bowl = [(0.05, 0.0), (0.13, 0.03), (0.17, 0.09), (0.165, 0.09), (0.12, 0.035), (0, 0.025)]
+    bowl = [(0.05, 0.0), (0.13, 0.03), (0.17, 0.09), (0.17, 0.09), (0.164, 0.09), (0.164, 0.09),
+            (0.12, 0.035), (0, 0.025)]
     scene.mesh("blue").lathe(bowl, (x - 1.1, y, z + 0.05), 32)
     for dx, dz in ((-1.13, 0.03), (-1.06, 0.1), (-1.08, -0.02)):
         scene.sphere("ochre", (x + dx, y + 0.075, z + dz), 0.042)
@@ -113,7 +114,8 @@ def _tableware(scene, center):
         plants.fan_leaf(scene.mesh("leaf_light"), _Middle(), (x + 0.35, y, z - 0.1), end, 0.12, 5)
     scene.sphere("glass", (x - 0.45, y + 0.07, z + 0.22), 0.07, "A paperweight")
     for k, material in enumerate(("terracotta", "paper", "blue")):
-        Placed(scene.mesh(material), (x + 1.2, y + 0.035 * k, z), 12 + 21 * k).box((-0.12, 0, -0.16), (0.12, 0.033, 0.16))
+        book = Placed(scene.mesh(material), (x + 1.2, y + 0.035 * k, z), 12 + 21 * k)
+        book.box((-0.12, 0, -0.16), (0.12, 0.033, 0.16))
 
 
 class _Middle:
@@ -126,8 +128,8 @@ class _Middle:
 def _sculptures(scene):
     """A ball of glass on a plinth, one of brass on the floor, and strings between two rings."""
     scene.mesh("plaster").box((2.97, 0, 6.47), (3.43, 1.0, 6.93))
-    scene.sphere("glass", (3.2, 1.2, 6.7), 0.2, "On the plinth")
-    scene.sphere("brass", (4.6, 0.45, 6.95), 0.45, "On the floor")
+    scene.sphere("glass", (3.2, 1.2, 6.7), 0.2, "Balls of glass, on the plinth, and of brass, on the floor")
+    scene.sphere("brass", (4.6, 0.45, 6.95), 0.45)
     _string_sculpture(scene, (8.4, 0.0, 9.3))
 
 
@@ -217,7 +219,8 @@ def _landscape(scene, random):
         x, z = (LENGTH + 14, -6 + 2.1 * k) if k < 15 else (LENGTH + 12 - 2.3 * (k - 15), WIDTH + 16)
         height = random.uniform(4.0, 7.5)
         radius = random.uniform(0.55, 0.8)
-        profile = [(radius * r, height * h) for r, h in ((0.5, 0), (0.95, 0.12), (1, 0.3), (0.8, 0.6), (0.42, 0.87), (0, 1))]
+        shape = ((0.5, 0), (0.95, 0.12), (1, 0.3), (0.8, 0.6), (0.42, 0.87), (0, 1))
+        profile = [(radius * r, height * h) for r, h in shape]
         foot = (x + random.uniform(-0.5, 0.5), -0.2, z + random.uniform(-0.5, 0.5))
         scene.mesh("hedge").lathe(profile, foot, 14)
 
