@@ -127,10 +127,10 @@ check is "$out" "$box/elsewhere|--version"
 check is "$err" ""
 check is "$(cat "$box/calls")" "ninja kerf_cli"
 
-what="no argument asks for help; standard input is the program's; a symlink will do"
+what="no argument renders the bundled scene; standard input is the program's; a symlink will do"
 ln -sf "$root/run" "$box/elsewhere/link"
 (cd "$box/elsewhere" && echo input | PATH="$box/fake:$PATH" CDPATH=$box bash link) >"$box/out" 2>"$box/err"
-check is "$(cat "$box/out")" "$box/elsewhere|--help"$'\n'input
+check is "$(cat "$box/out")" "$box/elsewhere|render $root/scenes/pavilion.yaml --size 720x480 --spp 16 --compare binned_sah"$'\n'input
 
 what="the build folder of another checkout"
 sed -i.bak 's|^CMAKE_HOME_DIRECTORY.*|CMAKE_HOME_DIRECTORY:INTERNAL=/nowhere|' "$root/build/release/CMakeCache.txt"

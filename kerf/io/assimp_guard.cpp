@@ -17,8 +17,8 @@ thread_local int readings = 0;  // of this library, in this thread
 
 // Assimp calls this where an assertion fails, prints and aborts. It has no handler to set before its version 5.3, but
 // as a function of a shared library it may be replaced. Where the linker finds Assimp's own first, that remains.
-namespace Assimp {
-[[gnu::weak]] void aiAssertViolation(const char* condition, const char* file, int line);
+namespace Assimp {  // NOLINT: its name, as is that of the function
+[[gnu::weak]] void aiAssertViolation(const char* condition, const char* file, int line);  // NOLINT
 
 void aiAssertViolation(const char* condition, const char* file, int line) {
   if (readings > 0) throw std::runtime_error(fmt::format("{}:{}: not so: {}", file, line, condition));

@@ -69,8 +69,8 @@ class Converter {
   }
 
   const AssimpMaterial& material_of(const aiMesh& mesh) {
-    static const AssimpMaterial kDefault;
-    if (mesh.mMaterialIndex >= converted_.size() || scene_.mMaterials[mesh.mMaterialIndex] == nullptr) return kDefault;
+    static const AssimpMaterial standard;
+    if (mesh.mMaterialIndex >= converted_.size() || scene_.mMaterials[mesh.mMaterialIndex] == nullptr) return standard;
     std::optional<AssimpMaterial>& converted = converted_[mesh.mMaterialIndex];
     if (!converted) converted = materials_.convert(*scene_.mMaterials[mesh.mMaterialIndex]);
     return *converted;

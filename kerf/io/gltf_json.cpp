@@ -118,7 +118,7 @@ class Scanner {
       begin_container(token);
       c == '{' ? object(depth + 1) : array(depth + 1);
       if (depth == 1 && std::find(std::begin(kKept), std::end(kKept), pattern_) == std::end(kKept)) {
-        cuts_.push_back({begin, at_});
+        cuts_.emplace_back(begin, at_);
       }
       return;
     }

@@ -94,7 +94,7 @@ class Converter {
     const double share_of_glass = transmission == nullptr ? 0 : number(*transmission, "transmissionFactor", 0);
     if (find_extension(from_, kUnlit) != nullptr) {
       material_.type = MaterialType::constant;
-    } else if (share_of_glass > 0) {
+    } else if (transmission != nullptr && share_of_glass > 0) {
       set_glass(*transmission, share_of_glass);
     } else if (from_.alphaMode == "BLEND" && alpha_ < 1) {
       material_.type = MaterialType::glass;

@@ -14,7 +14,7 @@ class Walker {
 
   GltfScene walk() {
     const std::vector<int> roots = find_roots();
-    for (auto root = roots.rbegin(); root != roots.rend(); ++root) open_.push_back({*root, {}});
+    for (size_t i = roots.size(); i-- > 0;) open_.push_back({roots[i], {}});
     while (!open_.empty()) {
       const Open open = open_.back();
       open_.pop_back();
@@ -73,7 +73,7 @@ class Walker {
     if (node.extensions.count("EXT_mesh_gpu_instancing") > 0) {
       file_.notes.add("EXT_mesh_gpu_instancing has no effect; the mesh is shown once", name);
     }
-    for (auto child = node.children.rbegin(); child != node.children.rend(); ++child) open_.push_back({*child, place});
+    for (size_t i = node.children.size(); i-- > 0;) open_.push_back({node.children[i], place});
   }
 
   Transform local_transform(const tinygltf::Node& node, int number) const {
