@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "gltf_text.h"
+#include "support/error_of.h"
 
 namespace kerf::test {
 namespace {
@@ -208,6 +210,10 @@ TEST(Gltf, PrimitivesShareWhatTheyHaveInCommon) {
   EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {5, 4, 6}}));
   EXPECT_EQ(mesh.normal_corners, (Triangles{{kNone, kNone, kNone}, {2, 1, 3}}));
   expect_sound(mesh);
+  // Without corners of their own there is a normal for every vertex, used or not.
+  gltf.accessor_of<uint8_t>(0, 1, R"(,"bufferView":2)");
+  gltf.meshes = {"{\"primitives\":[" + second + R"(,{"attributes":{"POSITION":4},"indices":5}]})"};
+  EXPECT_EQ(read(gltf).mesh.normal_corners, (Triangles{{2, 1, 3}}));
 }
 
 TEST(Gltf, ATriangleWithANormalOfLength0IsFlat) {
@@ -274,6 +280,18 @@ TEST(Gltf, TheFirstPerspectiveCameraOfTheSceneIsTaken) {
   EXPECT_EQ(model.notes, (std::vector<std::string>{"cameras that are not perspective have no effect (cameras[0])"}));
   gltf.cameras[1] = R"({"type":"perspective","perspective":{"yfov":3.5,"znear":0.1}})";
   EXPECT_EQ(refusal(gltf), "cameras[1].perspective.yfov is 3.5; expected more than 0 and less than pi");
+}
+
+TEST(Gltf, IsReadByItsName) {
+  const Folder folder;
+  EXPECT_EQ(read_model(folder.write("a.gltf", triangle().embedded())).mesh.triangles.size(), 1U);
+  EXPECT_EQ(read_model(folder.write("A.GLB", triangle().glb())).mesh.triangles.size(), 1U);
+  const std::vector<std::string> extensions = model_extensions();
+  for (const char* own : {".ply", ".obj", ".stl", ".gltf", ".glb"}) {
+    EXPECT_EQ(std::count(extensions.begin(), extensions.end(), own), 1) << own;
+  }
+  EXPECT_EQ(error_of(ErrorCode::file, [] { read_model("a.gtlf"); }),
+            "a.gtlf: its name ends with '.gtlf', which no reader of this build knows; did you mean '.gltf'?");
 }
 
 TEST(Gltf, WhatCannotBeShownIsSaidOnce) {

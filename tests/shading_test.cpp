@@ -237,7 +237,7 @@ TEST(RayOrigin, LeavesSpheresToo) {
     const Sphere sphere{{away + size * random.between(-1, 1), away, size * random.between(-1, 1)},
                         size * random.between(0.1F, 1)};
     const Vec3d outward = normalized(Vec3d{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)});
-    const SurfacePoint point = sphere_point(sphere, to_double(sphere.center) + outward * double{size});
+    const SurfacePoint point = sphere_point(sphere, outward * double{size});
     Vec3f direction{random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
     if (dot(to_double(direction), point.normal) < 0) direction = -direction;
     Ray ray;

@@ -92,7 +92,7 @@ Picture render_beauty(const RenderScene& scene, const Camera& camera, const Argu
                      {"rays", result.rays},
                      {"invalid_paths", result.invalid}};
   const bool as_values = image_format(a.output) != ImageFormat::png;
-  picture.image = as_values ? std::move(result.radiance) : srgb_picture(result.radiance, a.exposure);
+  picture.image = as_values ? std::move(result.radiance) : srgb_picture(std::move(result.radiance), a.exposure);
   picture.complete = result.complete;
   picture.seconds = result.seconds;
   return picture;

@@ -140,7 +140,7 @@ class Converter {
     const aiMesh& mesh = *instance.mesh;
     builder_.set_place(instance.place);
     MeshBuilder::Part part;
-    part.material = mesh.mMaterialIndex;
+    part.material = mesh.mMaterialIndex < converted_.size() ? mesh.mMaterialIndex : 0;
     const size_t count = mesh.mNumVertices;
     part.vertices = builder_.add_vertices(count);
     for (size_t i = 0; i < count; ++i) builder_.set_vertex(part.vertices + i, vector_of(mesh.mVertices[i]));

@@ -9,12 +9,9 @@
 namespace kerf {
 
 void Notes::add(const std::string& sentence, const std::string& subject) {
-  for (Note& note : notes_) {
-    if (note.sentence != sentence) continue;
-    ++note.count;
-    return;
-  }
-  notes_.push_back({sentence, subject, 1});
+  const auto [found, is_new] = numbers_.try_emplace(sentence, notes_.size());
+  if (is_new) notes_.push_back({sentence, subject});
+  ++notes_[found->second].count;
 }
 
 std::vector<std::string> Notes::sentences() const {

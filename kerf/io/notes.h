@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "kerf/base/error.h"
@@ -24,6 +25,7 @@ class Notes {
     size_t count = 0;
   };
   std::vector<Note> notes_;
+  std::unordered_map<std::string, size_t> numbers_;  // of notes, by sentence
 };
 
 /// What an Error says, without its place.

@@ -19,6 +19,7 @@ namespace {
 Box3f sphere_bounds(const Sphere& sphere) { return primitive_bounds(Geometry{Strided<Sphere>(&sphere, 1)}, 0); }
 
 void add_lamp(SceneDescription& scene, Vec3d center, double radius, Vec3f radiance) {
+  if (!(largest(abs(center)) + radius < double{kMaxCoordinate})) return;  // then the sky must do
   Material light;
   light.name = "added light";
   light.type = MaterialType::light;
@@ -59,11 +60,12 @@ void place_lamps_within(SceneDescription& scene, const Camera& camera, double si
 }
 
 /// The mean luminance of a small picture, its brightest tenth left out: lamps near a wall are not what a picture is of.
-float typical_luminance(const RenderScene& scene, const Camera& camera) {
+float typical_luminance(const RenderScene& scene, const Camera& camera, int threads) {
   PathTracerOptions options;
   options.width = 48;
   options.height = 32;
   options.samples = 8;
+  options.threads = threads;
   const Image picture = render_paths(scene, camera, options).radiance;
   std::vector<float> all;
   for (size_t i = 0; i < picture.pixels.size(); i += 3) {
@@ -81,7 +83,7 @@ void light_from_within(SceneDescription& scene, const Camera& camera, const Buil
   place_lamps_within(scene, camera, size);
   scene.background = {{0, 0, 0}, 0, 0};
   RenderScene lit(std::move(scene), build);
-  const float luminance = typical_luminance(lit, camera);
+  const float luminance = typical_luminance(lit, camera, build.threads);
   scene = lit.take_description();
   scene.background = sky;
   constexpr float kWanted = 0.3F;

@@ -18,7 +18,7 @@ class Ggx {
 
   /// The density of normals, by area of the microfacets.
   float density(Vec3f m) const {
-    const float d = m.z * m.z * (alpha2_ - 1) + 1;
+    const float d = m.x * m.x + m.y * m.y + alpha2_ * m.z * m.z;  // without cancellation near m.z = 1
     return alpha2_ / (std::numbers::pi_v<float> * d * d);
   }
 
@@ -48,7 +48,7 @@ class Ggx {
 
  private:
   float lambda(Vec3f w) const {
-    const float tangent2 = std::max(0.0F, 1 - w.z * w.z) / (w.z * w.z);
+    const float tangent2 = (w.x * w.x + w.y * w.y) / (w.z * w.z);
     return (std::sqrt(1 + alpha2_ * tangent2) - 1) / 2;
   }
 

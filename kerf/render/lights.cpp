@@ -41,7 +41,7 @@ SurfacePoint uniform_point(const Parallelogram& shape, std::array<float, 2> u) {
 SurfacePoint uniform_point(const Sphere& sphere, std::array<float, 2> u) {
   const double z = 1 - 2.0 * u[0], r = std::sqrt(std::max(0.0, 1 - z * z)), angle = 2 * kPi * u[1];
   const Vec3d outward{r * std::cos(angle), r * std::sin(angle), z};
-  return sphere_point(sphere, to_double(sphere.center) + outward);
+  return sphere_point(sphere, outward);
 }
 
 /// One minus the cosine of half the angle under which a sphere is seen from a distance beyond its radius; exact also
@@ -63,7 +63,7 @@ SurfacePoint cap_point(const Sphere& sphere, Vec3d to_center, double distance2, 
   const Frame frame(to_float(to_center / -distance));
   const Vec3d outward = to_double(frame.x) * (inner_sine * std::cos(angle)) +
                         to_double(frame.y) * (inner_sine * std::sin(angle)) + to_double(frame.z) * inner;
-  return sphere_point(sphere, to_double(sphere.center) + outward);
+  return sphere_point(sphere, outward);
 }
 
 /// From density over area to density over solid angle.
@@ -77,15 +77,17 @@ Lights::Lights(const RenderScene& scene) : scene_(scene) {
   const auto& objects = scene.description().objects;
   first_.assign(objects.size(), kNone);
   of_triangle_.resize(objects.size());
-  double power = 0;
+  double all_power = 0;
+  std::vector<double> power;  // of each light
   for (uint32_t object = 0; object < objects.size(); ++object) {
     const auto add = [&](uint32_t primitive, double area) {
       const Vec3f emission = scene.material(object, primitive).emission;
       const double own = static_cast<double>(luminance(emission)) * area;
       if (!(own > 0) || !std::isfinite(own)) return false;
       if (first_[object] == kNone) first_[object] = static_cast<uint32_t>(lights_.size());
-      lights_.push_back({object, primitive, static_cast<float>(own), area});
-      power_to_.push_back(power += own);
+      lights_.push_back({object, primitive, area});
+      power.push_back(own);
+      all_power += own;
       return true;
     };
     if (const auto* mesh = std::get_if<Mesh>(&objects[object].shape)) {
@@ -102,7 +104,12 @@ Lights::Lights(const RenderScene& scene) : scene_(scene) {
       add(0, area_of(*std::get_if<Parallelogram>(&objects[object].shape)));
     }
   }
-  for (Light& light : lights_) light.share = static_cast<float>(light.share / power);
+  double sum = 0;
+  for (size_t i = 0; i < lights_.size(); ++i) {
+    const double share = 0.5 * power[i] / all_power + 0.5 / static_cast<double>(lights_.size());
+    lights_[i].share = static_cast<float>(share);
+    share_to_.push_back(sum += share);
+  }
 }
 
 uint32_t Lights::number_of(uint32_t object, uint32_t primitive) const {
@@ -140,9 +147,8 @@ bool Lights::sample_surface(const Light& light, Vec3d from, std::array<float, 2>
 
 bool Lights::sample(Vec3d from, float choice, std::array<float, 2> u, LightSample& out) const {
   if (lights_.empty()) return false;
-  const double at = choice * power_to_.back();
-  const auto found = std::upper_bound(power_to_.begin(), power_to_.end(), at);
-  const size_t number = std::min<size_t>(static_cast<size_t>(found - power_to_.begin()), lights_.size() - 1);
+  const auto found = std::upper_bound(share_to_.begin(), share_to_.end(), double{choice} * share_to_.back());
+  const size_t number = std::min<size_t>(static_cast<size_t>(found - share_to_.begin()), lights_.size() - 1);
   const Light& light = lights_[number];
   if (!sample_surface(light, from, u, out)) return false;
   out.density *= light.share;

@@ -15,7 +15,8 @@ struct LightSample {
   float density = 0;  ///< of the direction, over solid angle, the choice of the light included
 };
 
-/// Every primitive of a scene that emits, to be drawn by its power. Both sides of a surface emit.
+/// Every primitive of a scene that emits. Half of the draws go by power, half to all alike, for the strongest light may
+/// be far away or out of sight. Both sides of a surface emit.
 class Lights {
  public:
   explicit Lights(const RenderScene& scene);
@@ -34,8 +35,8 @@ class Lights {
  private:
   struct Light {
     uint32_t object, primitive;
-    float share;  // of all power: the probability that it is drawn
     double area;
+    float share = 0;  // the probability that it is drawn
   };
 
   uint32_t number_of(uint32_t object, uint32_t primitive) const;
@@ -43,7 +44,7 @@ class Lights {
 
   const RenderScene& scene_;
   std::vector<Light> lights_;
-  std::vector<double> power_to_;                    // the sum up to and with each light
+  std::vector<double> share_to_;                    // the sum of the shares up to and with each light
   std::vector<uint32_t> first_;                     // of each object: its first light; kNone if it has none
   std::vector<std::vector<uint32_t>> of_triangle_;  // of meshes with lights: of each triangle, kNone if it is none
 };

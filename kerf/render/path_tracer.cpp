@@ -7,7 +7,6 @@
 #include <mutex>
 #include <vector>
 
-#include "kerf/base/fp_environment.h"
 #include "kerf/base/parallel.h"
 #include "kerf/render/bsdf.h"
 #include "kerf/render/color.h"
@@ -180,7 +179,7 @@ class TileTracer {
   }
 
   /// Next-event estimation: a point of a light, and the ray that asks whether it is seen.
-  void sample_light(Path& path, const SurfacePoint& point, Vec3f origin, const Bsdf& bsdf) {
+  void sample_light(Path& path, const SurfacePoint& receiver, Vec3f origin, const Bsdf& bsdf) {
     const float choice = path.sampler.next();
     const auto u = path.sampler.next_pair();
     LightSample light;
@@ -189,11 +188,14 @@ class TileTracer {
     if (scattered == Vec3f{}) return;
     const float weight = power_heuristic(light.density, bsdf.density(light.direction)) / light.density;
     // The far end is moved to this side of the light, by as much as the rounding of the ray's direction can be too.
-    light.point.extent = std::max(light.point.extent, 0x1p26 * largest(abs(point.position)));
+    light.point.extent = std::max(light.point.extent, 0x1p26 * largest(abs(receiver.position)));
     Ray shadow;
     shadow.origin = origin;
     shadow.direction = offset_origin(light.point, -light.direction) - origin;
-    shadow.t_max = 1 - 0x1p-22F;
+    // By a power of two, which is exact, for a ray's direction may be neither very long nor very short.
+    const int exponent = std::ilogb(largest(abs(shadow.direction)));
+    shadow.direction = shadow.direction * std::ldexp(1.0F, -exponent);
+    shadow.t_max = std::ldexp(1 - 0x1p-22F, exponent);
     shadow.mask = kIndirectMask;
     shadow_rays_.push_back(shadow);
     connections_.push_back({scaled(scaled(path.throughput, scattered), light.radiance) * weight, path.slot});
@@ -250,20 +252,16 @@ std::vector<Tile> tiles_of(uint32_t width, uint32_t height) {
   return tiles;
 }
 
-Image mean_of(const Film& film, uint32_t width, uint32_t height) {
-  Image image{width, height, 3, {}};
-  image.pixels.reserve(film.sums.size() * 3);
+void write_means(const Film& film, Image& image) {
   for (size_t i = 0; i < film.sums.size(); ++i) {
     const Vec3d mean = film.sums[i] / std::max(1.0, double{static_cast<double>(film.samples[i])});
-    for (uint32_t c = 0; c < 3; ++c) image.pixels.push_back(static_cast<float>(mean[c]));
+    for (uint32_t c = 0; c < 3; ++c) image.pixels[3 * i + c] = static_cast<float>(mean[c]);
   }
-  return image;
 }
 
 }  // namespace
 
-Image srgb_picture(const Image& radiance, float stops) {
-  Image picture = radiance;
+Image srgb_picture(Image picture, float stops) {
   const float factor = std::exp2(stops);
   for (float& value : picture.pixels) value = srgb_encoded(value * factor);
   return picture;
@@ -278,7 +276,9 @@ PathTracerResult render_paths(const RenderScene& scene, const Camera& camera, co
   film.sums.resize(size_t{options.width} * options.height);
   film.samples.resize(film.sums.size());
   PathTracerResult result;
-  std::mutex mutex;  // of the sums in `result`, `work` and progress()
+  result.radiance = {options.width, options.height, 3, {}};
+  result.radiance.pixels.resize(film.sums.size() * 3);  // now: if memory does not do, that is better known at once
+  std::mutex mutex;                                     // of the sums in `result`, `work` and progress()
   std::atomic<bool> stop = false;
   double work = 0;  // pixels times samples
   const double all_work = static_cast<double>(film.sums.size()) * options.samples;
@@ -287,7 +287,6 @@ PathTracerResult render_paths(const RenderScene& scene, const Camera& camera, co
   while (samples < options.samples && !stop) {
     const uint32_t count = std::min({std::max(samples, 1U), kMostSamples, options.samples - samples});
     const auto render_tiles = [&](size_t begin, size_t end) {
-      const StandardFloat standard;
       TileTracer tracer(scene, lights, rays, options);
       for (size_t i = begin; i < end && !stop.load(std::memory_order_relaxed); ++i) {
         const Tile& tile = tiles[i];
@@ -301,10 +300,10 @@ PathTracerResult render_paths(const RenderScene& scene, const Camera& camera, co
         if (options.progress && !stop && !options.progress(work / all_work)) stop = true;
       }
     };
-    with_threads(options.threads, [&] { parallel_for(tiles.size(), 4, render_tiles); });
+    with_threads(options.threads, [&] { parallel_for(tiles.size(), 1, render_tiles); });
     samples += count;
   }
-  result.radiance = mean_of(film, options.width, options.height);
+  write_means(film, result.radiance);
   result.complete = work == all_work;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;

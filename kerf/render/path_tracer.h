@@ -27,8 +27,8 @@ struct PathTracerResult {
 };
 
 /// Renders by unidirectional path tracing (Kajiya 1986) with next-event estimation, multiple importance sampling (Veach
-/// 1997) and Russian roulette: unbiased for every material, but for light that reaches a lambertian surface through
-/// smooth glass or mirrors, which is found by chance only.
+/// 1997) and Russian roulette: unbiased. Light that reaches a lambertian surface through smooth glass or mirrors is
+/// found by chance only, so it is noisy.
 ///
 /// Works on tiles: generates a queue of paths, traces all of it, shades all of it, until none is left. The picture is
 /// the same, bit for bit, for any number of threads and any structure; without an interrupt it depends on the scene,
@@ -36,6 +36,6 @@ struct PathTracerResult {
 PathTracerResult render_paths(const RenderScene& scene, const Camera& camera, const PathTracerOptions& options);
 
 /// A linear picture as a display shows it: brightened by a number of stops, sRGB encoded, clamped to [0, 1].
-Image srgb_picture(const Image& radiance, float stops = 0);
+Image srgb_picture(Image radiance, float stops = 0);
 
 }  // namespace kerf

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "kerf/base/error.h"
+#include "kerf/geometry/ray_sphere.h"
 #include "kerf/render/camera.h"
 #include "kerf/render/color.h"
 #include "kerf/render/frame.h"
@@ -66,6 +67,30 @@ void check(const SceneObject& object, size_t materials) {
   }
 }
 
+void check(const Material& material, const std::vector<Texture>& textures) {
+  const auto refuse = [&](const char* sentence) {
+    throw Error(ErrorCode::invalid_argument, "material '" + material.name + "'", sentence);
+  };
+  const auto is_share = [](float x) { return x >= 0 && x <= 1; };
+  const bool is_radiance = material.type == MaterialType::constant;
+  for (uint32_t c = 0; c < 3; ++c) {
+    const float albedo = material.albedo[c], emission = material.emission[c];
+    if (!(is_radiance ? albedo >= 0 && std::isfinite(albedo) : is_share(albedo))) refuse("its albedo is out of range");
+    if (!(emission >= 0 && std::isfinite(emission))) refuse("its emission is out of range");
+  }
+  if (!is_share(material.roughness)) refuse("its roughness must lie between 0 and 1");
+  if (!is_share(material.metallic)) refuse("its metallic must lie between 0 and 1");
+  if (!is_share(material.transmission)) refuse("its transmission must lie between 0 and 1");
+  if (!(material.refractive_index >= 1e-3F && material.refractive_index <= 1e3F)) {
+    refuse("its refractive index must lie between 0.001 and 1000");
+  }
+  if (material.albedo_texture == kNoTexture) return;
+  if (material.albedo_texture >= textures.size()) refuse("its texture does not exist");
+  const Texture& texture = textures[material.albedo_texture];
+  if (texture.rgb.size() != size_t{texture.width} * texture.height * 3)
+    refuse("its texture has not three bytes a pixel");
+}
+
 /// The numbers that a triangle's corners have among normals or texture coordinates; false if one has none.
 bool corner_numbers(const std::vector<Mesh::Corners>& corners, const Mesh& mesh, uint32_t triangle,
                     Mesh::Corners& out) {
@@ -76,10 +101,10 @@ bool corner_numbers(const std::vector<Mesh::Corners>& corners, const Mesh& mesh,
 Vec3f interpolated_normal(const Mesh& mesh, const Hit& hit, Vec3f flat) {
   Mesh::Corners k;
   if (mesh.normals.empty() || !corner_numbers(mesh.normal_corners, mesh, hit.primitive, k)) return flat;
-  const Vec3f smooth = normalized(mesh.normals[k[0]]) * (1 - hit.u - hit.v) + normalized(mesh.normals[k[1]]) * hit.u +
-                       normalized(mesh.normals[k[2]]) * hit.v;
-  const float length = std::sqrt(dot(smooth, smooth));
-  return length > 0 && std::isfinite(length) ? smooth / length : flat;
+  const auto unit = [&](uint32_t corner) { return normalized(to_double(mesh.normals[k[corner]])); };
+  const Vec3d smooth = unit(0) * (1.0 - hit.u - hit.v) + unit(1) * double{hit.u} + unit(2) * double{hit.v};
+  const double length = std::sqrt(dot(smooth, smooth));
+  return length > 0 && std::isfinite(length) ? to_float(smooth / length) : flat;
 }
 
 std::array<float, 2> interpolated_uv(const Mesh& mesh, const Hit& hit) {
@@ -114,11 +139,7 @@ RenderScene::RenderScene(SceneDescription description, const BuildOptions& optio
   for (const SceneObject& object : description_.objects) {
     check(object, description_.materials.size());
   }
-  for (const Material& material : description_.materials) {
-    if (material.albedo_texture != kNoTexture && material.albedo_texture >= description_.textures.size()) {
-      throw Error(ErrorCode::invalid_argument, "material '" + material.name + "'", "its texture does not exist");
-    }
-  }
+  for (const Material& material : description_.materials) check(material, description_.textures);
   const Background& background = description_.background;
   background_ = background.color * background.intensity;
   background_with_ambient_ = background_ + Vec3f{1, 1, 1} * background.ambient;
@@ -151,7 +172,9 @@ Surface RenderScene::surface(const Ray& ray, const Hit& hit) const {
     return surface;
   }
   if (const auto* sphere = std::get_if<Sphere>(&object.shape)) {
-    surface.point = sphere_point(*sphere, to_double(ray.origin) + to_double(ray.direction) * double{hit.t});
+    // Of the two ways to say where the hit is, the one with less rounding: t for near ones, u and v for far ones.
+    const Vec3d to_hit = to_double(ray.origin) - to_double(sphere->center) + to_double(ray.direction) * double{hit.t};
+    surface.point = sphere_point(*sphere, hit.t < sphere->radius ? to_hit : detail::from_octahedral(hit.u, hit.v));
   } else {
     surface.point = parallelogram_point(*std::get_if<Parallelogram>(&object.shape), hit.u, hit.v);
   }

@@ -17,7 +17,7 @@ Scene build_scene(const SceneDescription& description, const BuildOptions& optio
 class RenderScene {
  public:
   /// Takes the description over. Throws Error (invalid_argument) for a number of a material, texture, normal or texture
-  /// coordinate that is out of range, else as build_scene().
+  /// coordinate that does not exist and for a material whose values are out of range, else as build_scene().
   explicit RenderScene(SceneDescription description, const BuildOptions& options = {});
 
   const SceneDescription& description() const { return description_; }

@@ -26,10 +26,10 @@ SurfacePoint parallelogram_point(const Parallelogram& shape, double u, double v)
   return point;
 }
 
-SurfacePoint sphere_point(const Sphere& sphere, Vec3d near) {
+SurfacePoint sphere_point(const Sphere& sphere, Vec3d outward) {
   const Vec3d center = to_double(cleaned(sphere.center));
   SurfacePoint point;
-  point.normal = normalized(near - center);
+  point.normal = normalized(outward);
   point.position = center + point.normal * double{sphere.radius};
   point.extent = largest(abs(center)) + sphere.radius;
   return point;

@@ -15,8 +15,8 @@ struct SurfacePoint {
 
 SurfacePoint triangle_point(const Triangle& triangle, double u, double v);
 SurfacePoint parallelogram_point(const Parallelogram& shape, double u, double v);
-/// The point of the sphere that `near` lies over or under.
-SurfacePoint sphere_point(const Sphere& sphere, Vec3d near);
+/// The point in a direction from the sphere's centre, of any length.
+SurfacePoint sphere_point(const Sphere& sphere, Vec3d outward);
 
 /// The origin of a ray that leaves a surface to the side of `direction`: the nearest floats to the point, moved along
 /// the normal by as much as the error of the position and its rounding can be, so that the ray does not meet the

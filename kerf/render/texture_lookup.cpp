@@ -40,7 +40,7 @@ Neighbours neighbours(float at, uint32_t size) {
 }  // namespace
 
 Vec3f texture_color(const Texture& texture, std::array<float, 2> uv) {
-  if (texture.rgb.empty()) return {1, 1, 1};
+  if (texture.rgb.empty()) return {1, 1, 1};  // an image without pixels colours nothing
   const Neighbours x = neighbours(uv[0], texture.width), y = neighbours(1 - uv[1], texture.height);
   const auto mix = [](Vec3f a, Vec3f b, float share) { return a * (1 - share) + b * share; };
   return mix(mix(texel(texture, x.first, y.first), texel(texture, x.second, y.first), x.share),
