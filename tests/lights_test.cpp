@@ -202,6 +202,82 @@ TEST(Lights, RoughMetalUnderAPanelByBothStrategies) {
   }
 }
 
+TEST(Lights, UnequalTrianglesOfOneMesh) {
+  SceneDescription scene = empty_scene({0, 0, 0});
+  Mesh mesh = mesh_of(kSail);
+  for (const Vec3f& p : {Vec3f{-3, 0, 1}, Vec3f{-3, 0.5F, 1}, Vec3f{-3, 0, 1.5F}}) mesh.vertices.push_back(p);
+  mesh.triangles.push_back({3, 4, 5});
+  mesh.triangles.push_back({0, 0, 1});  // flat: no light
+  mesh.materials = {0, 1, 0};
+  scene.materials = {make_light(kEmission), make_light(kEmission * 50)};
+  scene.objects.push_back({mesh, 0, true, ""});
+  const double sum = polygon_irradiance({to_double(kSail.a), to_double(kSail.b), to_double(kSail.c)}) +
+                     50 * polygon_irradiance({{-3, 0, 1}, {-3, 0.5, 1}, {-3, 0, 1.5}});
+  expect_radiance(seen_floor(scene, 256), reflected(sum));
+}
+
+TEST(Lights, AFarStrongOneOutOfSightDoesNotDrownANearOne) {
+  SceneDescription scene = empty_scene({0, 0, 0});
+  add(scene, kPanel, make_light(kEmission));
+  add(scene, Sphere{{0, 0, -500}, 20}, make_light({1e4F, 1e4F, 1e4F}));
+  expect_radiance(seen_floor(scene, 64), reflected(polygon_irradiance(corners_of(kPanel))), 0.02);
+}
+
+TEST(Lights, AreTheSameAtEveryScale) {
+  const double expected = polygon_irradiance(corners_of(kPanel)) + 4 * kPi * 0.25 / 17 * (2 / std::sqrt(17.0));
+  for (const float scale : {1e-25F, 1e-20F, 1e-8F, 1e10F, 1e17F, 1e20F, 1e31F}) {
+    SceneDescription scene = empty_scene({0, 0, 0});
+    add(scene, Parallelogram{kPanel.corner * scale, kPanel.u * scale, kPanel.v * scale}, make_light(kEmission));
+    add(scene, Sphere{Vec3f{-3, -2, 2} * scale, 0.5F * scale}, make_light(kEmission * 4));
+    add(scene, Parallelogram{kFloor.corner * scale, kFloor.u * scale, kFloor.v * scale},
+        make_material(MaterialType::lambertian, {kAlbedo, kAlbedo, kAlbedo}));
+    // A ball in the way of a third light, whose shadow the point lies in.
+    add(scene, Sphere{Vec3f{0, -4, 4} * scale, 0.5F * scale}, make_light(kEmission));
+    add(scene, Sphere{Vec3f{0, -2, 2} * scale, 0.75F * scale}, make_material(MaterialType::lambertian, {}));
+    SCOPED_TRACE(scale);
+    expect_radiance(mean_radiance(std::move(scene), spot(Vec3d{3, 0, 6} * double{scale}, {0, 0, 0}), 256),
+                    reflected(expected), 0.02);
+  }
+}
+
+TEST(Lights, NarrowMetalLobesAreWhatIsSampled) {
+  // A lobe of some degrees under a light of the same width: evaluated and drawn must be the same.
+  for (const float roughness : {0.033F, 0.04F, 0.1F}) {
+    const double alpha = double{roughness} * roughness;
+    const Vec3d eye = normalized(Vec3d{3, 0, 6});
+    const Vec3d mirrored{-eye.x, 0, eye.z};
+    const double radius = alpha;  // at distance 1: the light's angle is half of the lobe's
+    // The midpoint rule over the light's disk, in double.
+    const auto lambda = [&](double cosine) {
+      return (-1 + std::sqrt(1 + alpha * alpha * (1 - cosine * cosine) / (cosine * cosine))) / 2;
+    };
+    const Vec3d side = normalized(cross(mirrored, Vec3d{0, 1, 0})), up = cross(side, mirrored);
+    double sum = 0;
+    constexpr int kSteps = 600;
+    for (int i = 0; i < kSteps; ++i) {
+      const double angle = std::asin(radius) * (i + 0.5) / kSteps;
+      for (int j = 0; j < kSteps; ++j) {
+        const double phi = 2 * kPi * (j + 0.5) / kSteps;
+        const Vec3d light = mirrored * std::cos(angle) + (side * std::cos(phi) + up * std::sin(phi)) * std::sin(angle);
+        const Vec3d half = normalized(light + eye);
+        const double d =
+            alpha * alpha / (kPi * std::pow(half.x * half.x + half.y * half.y + alpha * alpha * half.z * half.z, 2));
+        sum += d / (1 + lambda(eye.z) + lambda(light.z)) / (4 * eye.z) * std::sin(angle) *
+               (std::asin(radius) / kSteps) * (2 * kPi / kSteps);
+      }
+    }
+    SceneDescription scene = empty_scene({0, 0, 0});
+    add(scene, Sphere{to_float(mirrored), static_cast<float>(radius)}, make_light({1, 1, 1}));
+    Material metal = make_material(MaterialType::metal);
+    metal.roughness = roughness;
+    add(scene, kFloor, metal);
+    const Camera camera{eye * 5.0, {0, 0, 0}, {0, 1, 0}, 1e-6};
+    const test::Estimate seen = mean_radiance(std::move(scene), camera, 256);
+    EXPECT_LE(seen.error.x, 0.003 * sum) << roughness;
+    EXPECT_NEAR(seen.mean.x, sum, 3 * seen.error.x + 2e-3 * sum) << roughness;
+  }
+}
+
 /// density() says the same of a drawn point as sample() did.
 TEST(Lights, DensityIsThatOfTheSamples) {
   SceneDescription scene = empty_scene({0, 0, 0});

@@ -89,9 +89,7 @@ TEST(PathTracer, EveryStructureGivesThePictureOfBruteForce) {
   EXPECT_GE(compared, 4);
 }
 
-TEST(PathTracer, MoreSamplesGoOnWithTheFewer) {
-  // Not a bit equal, but the first samples are the same: the mean of 2 pictures of 8 is not one of 16, one of 16 is
-  // nearer to the truth than one of 4.
+TEST(PathTracer, MoreSamplesAreNearerToTheTruth) {
   const Image truth = render(small(1024, 9));
   const auto error = [&](const Image& image) {
     double sum = 0;

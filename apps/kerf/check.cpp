@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 int check(const SceneArguments& a) {
   SceneInput input = read_input(a, 1.5);
   const std::vector<std::string> notes = input.description.notes;
-  const RenderScene scene(std::move(input.description), input.build);
+  const RenderScene scene = build_input(a, input);
   const BuildReport& report = scene.scene().report();
   if (!a.quiet) print_build_notes(report);
   const Lights lights(scene);
@@ -30,7 +30,7 @@ int check(const SceneArguments& a) {
                       {"lights", lights.size()},
                       {"notes", notes},
                       {"scene", report_json(report)}};
-    write_json(a.json, all.dump(2));
+    write_json(a.json, all);
   } else if (!a.quiet) {
     fmt::print("{}: good: {} objects, {} primitives ({} without area), {} materials, {} lights; {}\n", a.input,
                description.objects.size(), report.primitives, report.degenerate, description.materials.size(),

@@ -2,7 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 namespace kerf::app {
 
@@ -13,11 +15,20 @@ void add_render(CLI::App& app, std::function<int()>& run);
 void add_check(CLI::App& app, std::function<int()>& run);
 void add_list(CLI::App& app, std::function<int()>& run);
 
-/// Writes figures to a file, or to standard output for "-".
-void write_json(const std::string& path, const std::string& text);
+/// The view that is not one of rays' hits.
+inline constexpr std::string_view kBeauty = "beauty";
 
-/// Becomes true at the first interrupt (Ctrl-C, SIGTERM); a second one ends the program at once.
+/// Writes figures to a file, or to standard output for "-"; bytes that are no UTF-8 become replacement characters.
+void write_json(const std::string& path, const nlohmann::ordered_json& figures);
+
+/// Finds out before any work is done that a file could not be written: no such folder, a folder of that name, not
+/// allowed. Throws Error (file).
+void check_output(const std::string& path);
+
+/// interrupted() becomes true at the first interrupt (Ctrl-C, SIGTERM); a second one ends the program at once.
 void watch_interrupts();
+/// From now on interrupts are passed over: files are written to their end.
+void ignore_interrupts();
 bool interrupted();
 
 }  // namespace kerf::app

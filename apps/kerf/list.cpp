@@ -14,7 +14,7 @@
 namespace kerf::app {
 namespace {
 
-constexpr std::string_view kBeauty = "beauty", kBeautySentence = "the path-traced picture";
+constexpr std::string_view kBeautySentence = "the path-traced picture";
 
 nlohmann::ordered_json menu_json() {
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
@@ -99,7 +99,7 @@ void add_list(CLI::App& app, std::function<int()>& run) {
       if (json->empty()) {
         print_menu();
       } else {
-        write_json(*json, menu_json().dump(2));
+        write_json(*json, menu_json());
       }
       return kDone;
     };

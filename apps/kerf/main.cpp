@@ -1,11 +1,13 @@
 // The command line: one file per subcommand, no logic of its own.
 
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <vector>
 
 #include "apps/kerf/command.h"
@@ -86,7 +88,8 @@ int run(int argc, char** argv) {
 
 }  // namespace
 
-void write_json(const std::string& path, const std::string& text) {
+void write_json(const std::string& path, const nlohmann::ordered_json& figures) {
+  const std::string text = figures.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   if (path == "-") {
     fmt::print("{}\n", text);
     return;
@@ -96,9 +99,31 @@ void write_json(const std::string& path, const std::string& text) {
   file.commit();
 }
 
+void check_output(const std::string& path) {
+  const std::filesystem::path file = path;
+  std::filesystem::path folder = file.parent_path();
+  if (folder.empty()) folder = ".";
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) throw Error(ErrorCode::file, path, "it is a folder");
+  if (!std::filesystem::is_directory(folder, ignored)) {
+    throw Error(ErrorCode::file, path, "there is no folder " + folder.string());
+  }
+  const bool exists = std::filesystem::exists(file, ignored);
+  if (exists && access(path.c_str(), W_OK) != 0) throw Error(ErrorCode::file, path, "it cannot be written to");
+  const bool is_replaced = !exists || std::filesystem::is_regular_file(file, ignored);
+  if (is_replaced && access(folder.c_str(), W_OK) != 0) {
+    throw Error(ErrorCode::file, path, "its folder cannot be written to");
+  }
+}
+
 void watch_interrupts() {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
+}
+
+void ignore_interrupts() {
+  std::signal(SIGINT, SIG_IGN);
+  std::signal(SIGTERM, SIG_IGN);
 }
 
 bool interrupted() { return interrupt_seen != 0; }

@@ -3,9 +3,11 @@
 #include <fmt/core.h>
 
 #include <array>
-#include <chrono>
+#include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "apps/kerf/command.h"
 #include "apps/kerf/progress_bar.h"
@@ -24,14 +26,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view kBeauty = "beauty";
-
 /// What the options were set to.
 struct Arguments : SceneArguments {
   std::string output, view = std::string(kBeauty), size = "960x640", compare;
-  uint32_t samples = 32, seed = 0;
-  float exposure = 0;
+  // Only where they were given: a view of rays' hits has no use for them.
+  std::optional<uint32_t> samples, seed;
+  std::optional<float> exposure;
 };
+
+constexpr uint32_t kDefaultSamples = 32;
 
 /// What is drawn: a debug view, or none for the path-traced picture.
 const ViewEntry* find_view(const std::string& name) {
@@ -46,10 +49,12 @@ const ViewEntry* find_view(const std::string& name) {
 
 std::array<uint32_t, 2> parse_size(const std::string& text) {
   std::array<uint32_t, 2> size{};
-  char rest = 0;
-  const bool is_plain = text.find_first_not_of("0123456789x") == std::string::npos && text.size() < 20;
-  if (!is_plain || std::sscanf(text.c_str(), "%ux%u%c", &size[0], &size[1], &rest) != 2 || size[0] == 0 ||
-      size[1] == 0 || size[0] > 65536 || size[1] > 65536) {
+  const char* const end = text.data() + text.size();
+  const auto width = std::from_chars(text.data(), end, size[0]);
+  const bool has_x = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
+  const auto height = has_x ? std::from_chars(width.ptr + 1, end, size[1]) : width;
+  const bool is_whole = has_x && height.ec == std::errc() && height.ptr == end;
+  if (!is_whole || size[0] == 0 || size[1] == 0 || size[0] > 65536 || size[1] > 65536) {
     throw Error(
         ErrorCode::invalid_option, "--size",
         fmt::format("'{}' is not a size; write it as WIDTHxHEIGHT, such as 960x640, each from 1 to 65536", text));
@@ -57,16 +62,23 @@ std::array<uint32_t, 2> parse_size(const std::string& text) {
   return size;
 }
 
-/// Finds mistakes in the words before any work is done: the output's format and folder.
-void check_output(const std::string& output) {
-  image_format(output);
-  const std::filesystem::path folder = std::filesystem::path(output).parent_path();
-  if (!folder.empty() && !std::filesystem::is_directory(folder)) {
-    throw Error(ErrorCode::file, output, "there is no folder " + folder.string());
+/// Finds mistakes in the words before any work is done.
+void check_words(const Arguments& a, const ViewEntry* view, uint32_t width, uint32_t height) {
+  const auto refuse = [](const char* option, const std::string& sentence) {
+    throw Error(ErrorCode::invalid_option, option, sentence);
+  };
+  if (!a.structure.empty()) parse_pipeline(a.structure);
+  if (!a.compare.empty()) parse_pipeline(a.compare);
+  const bool is_png = image_format(a.output) == ImageFormat::png;
+  if (view != nullptr && a.samples) refuse("--spp", "a view of what rays hit has one ray a pixel");
+  if (view != nullptr && a.seed) refuse("--seed", "a view of what rays hit is not random");
+  if (a.exposure && (view != nullptr || !is_png)) refuse("--exposure", "it acts on a path-traced PNG only");
+  if (a.exposure && !std::isfinite(*a.exposure)) refuse("--exposure", "it must be a number");
+  if (is_png && uint64_t{width} * height * 3 + height > kMostPngBytes) {
+    refuse("--size", fmt::format("{} pixels are too many for a PNG; write a PFM", a.size));
   }
-  if (access(folder.empty() ? "." : folder.c_str(), W_OK) != 0 && access(output.c_str(), W_OK) != 0) {
-    throw Error(ErrorCode::file, output, "the folder cannot be written to");
-  }
+  check_output(a.output);
+  if (!a.json.empty() && a.json != "-") check_output(a.json);
 }
 
 /// A finished or interrupted picture.
@@ -80,19 +92,22 @@ struct Picture {
 Picture render_beauty(const RenderScene& scene, const Camera& camera, const Arguments& a, uint32_t width,
                       uint32_t height) {
   ProgressBar bar(a.quiet);
-  PathTracerResult result = render_paths(scene, camera, {width, height, a.samples, a.seed, a.threads, std::ref(bar)});
+  PathTracerResult result =
+      render_paths(scene, camera,
+                   {width, height, a.samples.value_or(kDefaultSamples), a.seed.value_or(0), a.threads, std::ref(bar)});
   if (result.invalid > 0 && !a.quiet) {
     fmt::print(stderr, "kerf: note: {} of {} paths gave no finite radiance and were left out\n", result.invalid,
                result.paths);
   }
   Picture picture;
-  picture.figures = {{"samples", a.samples},
-                     {"seed", a.seed},
+  picture.figures = {{"samples", a.samples.value_or(kDefaultSamples)},
+                     {"seed", a.seed.value_or(0)},
                      {"paths", result.paths},
                      {"rays", result.rays},
                      {"invalid_paths", result.invalid}};
   const bool as_values = image_format(a.output) != ImageFormat::png;
-  picture.image = as_values ? std::move(result.radiance) : srgb_picture(std::move(result.radiance), a.exposure);
+  picture.image =
+      as_values ? std::move(result.radiance) : srgb_picture(std::move(result.radiance), a.exposure.value_or(0));
   picture.complete = result.complete;
   picture.seconds = result.seconds;
   return picture;
@@ -145,17 +160,17 @@ int render(Arguments a) {
   const ViewEntry* view = find_view(a.view);
   const auto [width, height] = parse_size(a.size);
   const double aspect = static_cast<double>(width) / height;
-  if (!a.compare.empty()) parse_pipeline(a.compare);
-  check_output(a.output);
+  check_words(a, view, width, height);
   SceneInput input = read_input(a, aspect);
   if (view == nullptr && !input.description.is_lit) add_light(input.description, input.camera, input.build);
   const Json comparison = a.compare.empty() ? Json() : compare(input, a, aspect);
-  const RenderScene scene(std::move(input.description), input.build);
+  const RenderScene scene = build_input(a, input);
   const BuildReport& report = scene.scene().report();
   if (!a.quiet) print_build_notes(report);
   watch_interrupts();
   const Picture picture = view != nullptr ? render_debug_view(scene.scene(), input.camera, a, *view, width, height)
                                           : render_beauty(scene, input.camera, a, width, height);
+  ignore_interrupts();
   write_image(a.output, picture.image);
   if (!a.json.empty()) {
     Json all = {{"input", a.input}, {"output", a.output}, {"view", a.view},
@@ -164,7 +179,7 @@ int render(Arguments a) {
     all["render_seconds"] = picture.seconds;
     if (!comparison.is_null()) all["comparison"] = comparison;
     all["scene"] = report_json(report);
-    write_json(a.json, all.dump(2));
+    write_json(a.json, all);
   }
   if (!a.quiet) {
     fmt::print(stderr, "{} {} in {:.2f} s, built in {:.2f} s\n", a.output,
@@ -190,10 +205,9 @@ void add_render(CLI::App& app, std::function<int()>& run) {
   command->add_option("--spp", a->samples, "Samples of each pixel")
       ->check(CLI::Range(1, 1 << 24))
       ->capture_default_str();
-  command->add_option("--seed", a->seed, "Another number gives another noise")->capture_default_str();
+  command->add_option("--seed", a->seed, "Another number gives another noise (default: 0)");
   command->add_option("--exposure", a->exposure, "Stops by which a PNG is brightened (negative: darkened)")
-      ->check(CLI::Range(-64.0, 64.0))
-      ->capture_default_str();
+      ->check(CLI::Range(-64.0, 64.0));
   command->add_option("--view", a->view, "beauty (path-traced), or a view of what rays hit; see kerf list")
       ->capture_default_str();
   command->add_option("--compare", a->compare, "Also say what rays cost in this structure, such as binned_sah");

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <charconv>
 #include <cmath>
 
 #include "kerf/base/error.h"
@@ -15,28 +16,58 @@ using Json = nlohmann::ordered_json;
 
 Json number(double x) { return std::isfinite(x) ? Json(x) : Json("inf"); }
 
-Vec3d vector_of(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
+/// "X,Y,Z". One word, not three as CLI11 would have it: that takes what stands behind it too.
+Vec3d parse_vector(const char* option, const std::string& text) {
+  Vec3d v;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (uint32_t i = 0; i < 3; ++i) {
+    if (i > 0 && (at == end || *at++ != ',')) break;
+    const auto [rest, error] = std::from_chars(at, end, v[i]);
+    if (error != std::errc() || !std::isfinite(v[i])) break;
+    at = rest;
+    if (i == 2 && at == end) return v;
+  }
+  throw Error(ErrorCode::invalid_option, option,
+              fmt::format("'{}' is not a vector; write it as X,Y,Z, such as 0,1.5,-2", text));
+}
+
+void add_vector(CLI::App& command, const char* option, std::optional<Vec3d>& vector, const char* sentence) {
+  command
+      .add_option_function<std::string>(
+          option, [option, &vector](const std::string& text) { vector = parse_vector(option, text); }, sentence)
+      ->type_name("X,Y,Z");
+}
 
 Camera settled_camera(const SceneArguments& arguments, const SceneDescription& scene, double aspect) {
-  const bool has_fov = arguments.fov != 0;
-  if (has_fov && !(arguments.fov > 0 && arguments.fov < 180)) {
+  if (arguments.fov && !(*arguments.fov > 0 && *arguments.fov < 180)) {
     throw Error(ErrorCode::invalid_option, "--fov", "it must lie between 0 and 180 degrees");
   }
   Camera camera;
   if (scene.camera) {
     camera = *scene.camera;
-    if (!arguments.up.empty()) camera.up = vector_of(arguments.up);
-    if (has_fov) camera.fov = arguments.fov;
+    camera.up = arguments.up.value_or(camera.up);
+    camera.fov = arguments.fov.value_or(camera.fov);
   } else {
-    const Vec3d up = arguments.up.empty() ? camera.up : vector_of(arguments.up);
-    camera = framing_camera(bounds_of(scene), aspect, up, has_fov ? arguments.fov : camera.fov);
+    camera =
+        framing_camera(bounds_of(scene), aspect, arguments.up.value_or(camera.up), arguments.fov.value_or(camera.fov));
   }
-  if (!arguments.look_at.empty()) camera.look_at = vector_of(arguments.look_at);
-  if (!arguments.eye.empty()) camera.eye = vector_of(arguments.eye);
+  camera.look_at = arguments.look_at.value_or(camera.look_at);
+  camera.eye = arguments.eye.value_or(camera.eye);
   return camera;
 }
 
-/// Checked before the file is read where it is given, so that a misspelt word costs no waiting.
+/// Says what is wrong with a camera before any work is done: a mistake in the words if words made it, else in the file.
+void check_camera(const SceneArguments& arguments, const Camera& camera) {
+  try {
+    CameraRays(camera, 3, 2);
+  } catch (const Error& error) {
+    const bool is_usage = arguments.eye || arguments.look_at || arguments.up || arguments.fov;
+    throw is_usage ? error : Error(ErrorCode::file, arguments.input, error.what());
+  }
+}
+
+/// What the command line says goes before what the file says.
 std::string settled_structure(const SceneArguments& arguments, const SceneDescription& scene) {
   if (!arguments.structure.empty()) return arguments.structure;
   if (scene.structure.empty()) return BuildOptions{}.structure;
@@ -64,16 +95,14 @@ void add_scene_options(CLI::App& command, SceneArguments& a) {
 }
 
 void add_camera_options(CLI::App& command, SceneArguments& a) {
-  command.add_option("--eye", a.eye, "Camera position X,Y,Z (default: the scene's camera, or the model is framed)")
-      ->delimiter(',')
-      ->expected(3);
-  command.add_option("--look-at", a.look_at, "Point in the middle of the picture X,Y,Z")->delimiter(',')->expected(3);
-  command.add_option("--up", a.up, "Direction that is up X,Y,Z (default: 0,1,0)")->delimiter(',')->expected(3);
+  add_vector(command, "--eye", a.eye, "Camera position (default: the scene's camera, or the model is framed)");
+  add_vector(command, "--look-at", a.look_at, "Point in the middle of the picture");
+  add_vector(command, "--up", a.up, "Direction that is up (default: 0,1,0)");
   command.add_option("--fov", a.fov, "Vertical field of view in degrees (default: the scene's, or 45)");
 }
 
 SceneInput read_input(const SceneArguments& arguments, double aspect) {
-  if (!arguments.structure.empty()) parse_pipeline(arguments.structure);
+  if (!arguments.structure.empty()) parse_pipeline(arguments.structure);  // costs no waiting
   SceneInput input;
   input.description = read_scene(arguments.input);
   if (!arguments.quiet) {
@@ -81,8 +110,17 @@ SceneInput read_input(const SceneArguments& arguments, double aspect) {
   }
   input.camera = settled_camera(arguments, input.description, aspect);
   input.build = {settled_structure(arguments, input.description), arguments.threads, arguments.skip_invalid};
-  CameraRays(input.camera, 3, 2);  // says what is wrong with it before any work is done
+  check_camera(arguments, input.camera);
   return input;
+}
+
+RenderScene build_input(const SceneArguments& arguments, SceneInput& input) {
+  try {
+    return RenderScene(std::move(input.description), input.build);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::invalid_argument) throw;
+    throw Error(ErrorCode::file, arguments.input, error.what());
+  }
 }
 
 Json report_json(const BuildReport& r) {

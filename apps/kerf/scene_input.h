@@ -2,8 +2,8 @@
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
-#include <vector>
 
 #include "kerf/render/camera.h"
 #include "kerf/render/render_scene.h"
@@ -13,8 +13,8 @@ namespace kerf::app {
 /// What commands that read a scene are told about it.
 struct SceneArguments {
   std::string input, structure, json;
-  std::vector<double> eye, look_at, up;
-  double fov = 0;  // 0: not given
+  std::optional<Vec3d> eye, look_at, up;
+  std::optional<double> fov;
   int threads = 0;
   bool skip_invalid = false, quiet = false;
 };
@@ -33,6 +33,9 @@ struct SceneInput {
 /// Reads the file, prints its notes, settles camera and structure: what was given on the command line goes before what
 /// the file says, and that before the defaults.
 SceneInput read_input(const SceneArguments& arguments, double aspect);
+
+/// Builds what was read; its description is taken. What is wrong with the file's values is an Error (file).
+RenderScene build_input(const SceneArguments& arguments, SceneInput& input);
 
 nlohmann::ordered_json report_json(const BuildReport& report);
 

@@ -81,10 +81,8 @@ void write_pfm(const std::string& path, const Image& image) {
 
 void write_png(const std::string& path, const Image& image) {
   check_image(path, image);
-  // stb counts bytes, and twice as many while it compresses, in an int.
-  constexpr size_t kLimit = size_t{1} << 29;
   const size_t row = size_t{image.width} * image.channels;
-  if (image.pixels.size() + image.height > kLimit) {
+  if (image.pixels.size() + image.height > kMostPngBytes) {
     throw Error(ErrorCode::invalid_argument, path,
                 fmt::format("{} x {} pixels are too many for a PNG; write a PFM", image.width, image.height));
   }

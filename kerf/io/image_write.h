@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "kerf/io/image.h"
@@ -16,8 +17,12 @@ void check_image(const std::string& path, const Image& image);
 /// Writes the floats as they are, as a little-endian portable float map.
 void write_pfm(const std::string& path, const Image& image);
 
+/// The bytes of pixels and rows that write_png() takes: stb counts them, and twice as many while it compresses, in an
+/// int.
+inline constexpr size_t kMostPngBytes = size_t{1} << 29;
+
 /// Writes 8 bits a channel. Values are meant for display, in [0, 1]; what lies outside is clamped and NaN becomes 0.
-/// Throws Error (invalid_argument) for an image of more than 2^29 bytes.
+/// Throws Error (invalid_argument) for an image of more than kMostPngBytes.
 void write_png(const std::string& path, const Image& image);
 
 /// Writes the floats as they are, NaN and infinities too, as an OpenEXR file: 32 bits a channel, R, G and B or Y alone,

@@ -158,6 +158,17 @@ USAGE = [
     (["render", "square.ply", "--size", "10x-3"], "WIDTHxHEIGHT"),
     (["render", "square.ply", "--eye", "1,2"], "--eye"),
     (["render", "square.ply", "--eye", "1,2,x"], "--eye"),
+    (["render", "square.ply", "--eye", "1,2,3,4"], "X,Y,Z"),
+    (["render", "square.ply", "--eye", "1,inf,3"], "X,Y,Z"),
+    (["render", "square.ply", "--fov", "0"], "--fov"),
+    (["render", "square.ply", "--size", "4294967297x4"], "WIDTHxHEIGHT"),
+    (["render", "square.ply", "--size", "8x8x8"], "WIDTHxHEIGHT"),
+    (["render", "square.ply", "--size", "65536x2731"], "too many for a PNG"),
+    (["render", "square.ply", "--exposure", "nan"], "--exposure"),
+    (["render", "square.ply", "-o", "a.pfm", "--exposure", "1"], "--exposure"),
+    (["render", "square.ply", "--view", "depth", "--exposure", "1"], "--exposure"),
+    (["render", "square.ply", "--view", "depth", "--spp", "4"], "--spp"),
+    (["render", "square.ply", "--view", "depth", "--seed", "4"], "--seed"),
     (["render", "square.ply", "--fov", "180"], "--fov"),
     (["render", "square.ply", "--eye", "1,1,1", "--look-at", "1,1,1"], "eye and look-at"),
     (["render", "square.ply", "--up", "0,0,0"], "camera"),
@@ -222,8 +233,49 @@ def test_output_that_cannot_be_written_ends_with_1(output):
     assert result.returncode == 1 and output in result.stderr
 
 
+def wait_for_handler(process):
+    """Returns when the process catches SIGINT, so that a signal does not come too early."""
+    for _ in range(600):
+        try:
+            with open(f"/proc/{process.pid}/status") as status:
+                caught = next(int(line.split()[1], 16) for line in status if line.startswith("SigCgt"))
+            if caught >> (signal.SIGINT - 1) & 1:
+                return
+        except (OSError, StopIteration):
+            time.sleep(2)
+            return
+        time.sleep(0.02)
+
+
+def test_options_of_three_numbers_leave_the_input_alone(folder):
+    result = kerf("render", *QUICK, "--eye", "0.5,0.5,2", "--look-at", "0.5,0.5,0", "square.ply")
+    assert result.returncode == 0, result.stderr
+
+
+def test_a_name_that_is_no_text_is_written_all_the_same(folder):
+    name = b"sq\xffuare.ply"
+    (folder / os.fsdecode(name)).write_text(SQUARE)
+    result = subprocess.run([KERF, "render", name, "-o", "out.png", *QUICK, "--json", "-"], capture_output=True)
+    assert result.returncode == 0, result.stderr
+    assert json.loads(result.stdout)["input"] == "sq\ufffduare.ply"
+
+
+def test_json_that_cannot_be_written_is_known_before_any_work(folder):
+    result = kerf("render", "square.ply", "-o", "out.png", "--json", "nowhere/x.json", "--spp", "1000000")
+    assert result.returncode == 1 and "nowhere" in result.stderr and not (folder / "out.png").exists()
+    (folder / "folder.png").mkdir()
+    result = kerf("render", "square.ply", "-o", "folder.png", "--spp", "1000000")
+    assert result.returncode == 1 and "it is a folder" in result.stderr
+
+
+def test_a_model_at_the_edge_of_what_is_allowed_is_drawn():
+    broken("a.ply", SQUARE.replace("1 1 0\n", "1e36 1e36 0\n"))
+    result = kerf("render", "a.ply", "-o", "out.png", *QUICK)
+    assert result.returncode == 0, result.stderr
+
+
 def test_output_is_judged_before_any_work():
-    slow = ["--size", "20000x20000", "--structure", "brute_force"]  # hours, if it were begun
+    slow = ["--size", "10000x10000", "--structure", "brute_force"]  # hours, if it were begun
     for output in ["out.gif", "nowhere/out.png"]:
         assert kerf("render", "square.ply", "-o", output, *slow).returncode == 1
     assert kerf("render", "missing.ply", "--structure", "binned_shah").returncode == 2
@@ -252,7 +304,8 @@ def test_an_interrupt_writes_what_is_there_and_ends_with_130(folder):
     process = subprocess.Popen([KERF, "render", "many.ply", "-o", "out.pfm", "--view", "depth", "--size",
                                 f"2000x{rows}", "--structure", "brute_force", "--threads", "1", "--eye", "50,100,40",
                                 "--look-at", "50,100,0"], stderr=subprocess.PIPE)
-    time.sleep(1.5)
+    wait_for_handler(process)
+    time.sleep(0.5)
     process.send_signal(signal.SIGINT)
     assert process.wait(timeout=60) == 130
     assert "interrupted" in process.stderr.read().decode()
@@ -285,7 +338,8 @@ def test_compare_says_what_rays_cost_in_both_structures():
 def test_an_interrupted_picture_is_whole(folder):
     process = subprocess.Popen([KERF, "render", "square.ply", "-o", "out.pfm", "--size", "64x48", "--spp", "1000000"],
                                stderr=subprocess.PIPE)
-    time.sleep(2)
+    wait_for_handler(process)
+    time.sleep(0.5)
     process.send_signal(signal.SIGINT)
     assert process.wait(timeout=60) == 130
     assert "interrupted" in process.stderr.read().decode()
