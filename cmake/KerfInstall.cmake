@@ -12,8 +12,9 @@ function(kerf_install target set)
   install(EXPORT ${set} NAMESPACE kerf:: DESTINATION ${KERF_CMAKE_DIR})
   foreach(folder ${ARGN})
     # simd.h is for the library's own kernels: it needs Highway's headers, which users of Kerf need not have.
+    # The folders within kerf/io are the insides of its readers.
     install(DIRECTORY kerf/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kerf FILES_MATCHING PATTERN "*.h"
-      PATTERN simd.h EXCLUDE)
+      PATTERN simd.h EXCLUDE REGEX "kerf/io/[a-z]+$" EXCLUDE)
   endforeach()
 endfunction()
 

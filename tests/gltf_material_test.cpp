@@ -168,6 +168,17 @@ TEST(GltfMaterial, AnImageThatIsMissingOrNoneIsLeftOutAndSaidSo) {
   EXPECT_EQ(refusal(folder, gltf.glb()), "images[0] names bufferViews[9]; the file has 2");
 }
 
+TEST(GltfMaterial, OneThatNobodyUsesTakesNoImageAndNoNote) {
+  GltfMaker gltf = textured("{}");
+  gltf.materials.emplace_back(
+      R"({"name":"idle","alphaMode":"MASK","pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})");
+  gltf.textures = {R"({"source":0})"};
+  gltf.images = {R"({"uri":"none.png"})"};
+  const Model model = read(gltf);
+  EXPECT_TRUE(model.notes.empty());
+  EXPECT_EQ(model.materials.at(1).name, "idle");
+}
+
 TEST(GltfMaterial, TheMeanOfATextureStandsForWhatHasNoTextureHere) {
   const Folder folder;
   png(folder, "orm.png", {{1, 0.2F, 0.4F}, {0, 0.6F, 1}});

@@ -13,8 +13,8 @@
 
 #include "kerf/base/error.h"
 #include "kerf/geometry/hit.h"
-#include "kerf/io/mtl.h"
 #include "kerf/io/obj.h"
+#include "kerf/io/obj/mtl.h"
 #include "kerf/io/stl.h"
 #include "small_images.h"
 

@@ -1,6 +1,6 @@
 // MTL: what becomes of its materials, and how an OBJ finds them and their textures.
 
-#include "kerf/io/mtl.h"
+#include "kerf/io/obj/mtl.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -15,8 +15,8 @@
 #include <string_view>
 
 #include "kerf/base/error.h"
-#include "kerf/io/assimp_guard.h"
-#include "kerf/io/assimp_material.h"
+#include "kerf/io/assimp/assimp_guard.h"
+#include "kerf/io/assimp/assimp_material.h"
 #include "kerf/io/mapped_file.h"
 #include "kerf/io/mesh_builder.h"
 #include "kerf/io/notes.h"

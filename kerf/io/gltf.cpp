@@ -1,10 +1,10 @@
 #include "kerf/io/gltf.h"
 
-#include "kerf/io/gltf_container.h"
-#include "kerf/io/gltf_file.h"
-#include "kerf/io/gltf_material.h"
-#include "kerf/io/gltf_mesh.h"
-#include "kerf/io/gltf_scene.h"
+#include "kerf/io/gltf/gltf_container.h"
+#include "kerf/io/gltf/gltf_file.h"
+#include "kerf/io/gltf/gltf_material.h"
+#include "kerf/io/gltf/gltf_mesh.h"
+#include "kerf/io/gltf/gltf_scene.h"
 #include "kerf/io/mapped_file.h"
 
 namespace kerf {

@@ -1,10 +1,10 @@
 #include "kerf/io/obj.h"
 
 #include "kerf/io/mapped_file.h"
-#include "kerf/io/obj_cursor.h"
-#include "kerf/io/obj_geometry.h"
-#include "kerf/io/obj_materials.h"
-#include "kerf/io/obj_scan.h"
+#include "kerf/io/obj/obj_cursor.h"
+#include "kerf/io/obj/obj_geometry.h"
+#include "kerf/io/obj/obj_materials.h"
+#include "kerf/io/obj/obj_scan.h"
 
 namespace kerf {
 

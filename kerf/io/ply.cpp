@@ -11,8 +11,8 @@
 #include "kerf/io/byte_order.h"
 #include "kerf/io/mapped_file.h"
 #include "kerf/io/message.h"
-#include "kerf/io/ply_cursor.h"
-#include "kerf/io/ply_header.h"
+#include "kerf/io/ply/ply_cursor.h"
+#include "kerf/io/ply/ply_header.h"
 
 namespace kerf {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "kerf/base/error.h"
 #include "kerf/io/mapped_file.h"
-#include "kerf/io/texture_check.h"
+#include "kerf/io/texture/texture_check.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpragmas"

@@ -5,12 +5,12 @@
 
 #include "kerf/io/mapped_file.h"
 #include "kerf/io/notes.h"
-#include "kerf/io/yaml_geometry.h"
-#include "kerf/io/yaml_material.h"
-#include "kerf/io/yaml_models.h"
-#include "kerf/io/yaml_node.h"
-#include "kerf/io/yaml_parse.h"
-#include "kerf/io/yaml_settings.h"
+#include "kerf/io/yaml/yaml_geometry.h"
+#include "kerf/io/yaml/yaml_material.h"
+#include "kerf/io/yaml/yaml_models.h"
+#include "kerf/io/yaml/yaml_node.h"
+#include "kerf/io/yaml/yaml_parse.h"
+#include "kerf/io/yaml/yaml_settings.h"
 
 namespace kerf {
 namespace {

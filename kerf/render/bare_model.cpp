@@ -86,7 +86,8 @@ void light_from_within(SceneDescription& scene, const Camera& camera, const Buil
   const float luminance = typical_luminance(lit, camera, build.threads);
   scene = lit.take_description();
   scene.background = sky;
-  constexpr float kWanted = 0.3F;
+  scene.background.intensity = 0.5F;  // of which a room sees the bright end only
+  constexpr float kWanted = 0.25F;
   if (!(luminance > 0)) return;
   for (size_t i = first; i < scene.materials.size(); ++i) {
     scene.materials[i].emission = scene.materials[i].emission * (kWanted / luminance);
