@@ -202,7 +202,7 @@ void add_render(CLI::App& app, std::function<int()>& run) {
                       "Picture to write: .png to look at, .exr or .pfm for the values themselves "
                       "(default: the input's name with .png, in this folder)");
   command->add_option("--size", a->size, "Width and height in pixels")->capture_default_str();
-  command->add_option("--spp", a->samples, "Samples of each pixel")
+  command->add_option("--spp", a->samples, "Samples of each pixel (default: 32)")
       ->check(CLI::Range(1, 1 << 24))
       ->capture_default_str();
   command->add_option("--seed", a->seed, "Another number gives another noise (default: 0)");
