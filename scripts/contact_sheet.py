@@ -68,7 +68,7 @@ def main():
     parser.add_argument("--scenes", default=os.environ.get("KERF_SCENES"), help="folder of the real scenes")
     parser.add_argument("-o", "--output", default=ROOT / "docs/pictures.png", type=pathlib.Path)
     parser.add_argument("--size", default="300x200", help="of each picture")
-    parser.add_argument("--spp", default=96, type=int, help="samples of each pixel")
+    parser.add_argument("--spp", default=64, type=int, help="samples of each pixel")
     arguments = parser.parse_args()
     width, height = map(int, arguments.size.split("x"))
 

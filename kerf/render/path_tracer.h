@@ -36,6 +36,6 @@ struct PathTracerResult {
 PathTracerResult render_paths(const RenderScene& scene, const Camera& camera, const PathTracerOptions& options);
 
 /// A linear picture as a display shows it: brightened by a number of stops, sRGB encoded, clamped to [0, 1].
-Image srgb_picture(Image radiance, float stops = 0);
+Image srgb_picture(Image picture, float stops = 0);
 
 }  // namespace kerf
