@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "kerf/base/error.h"
+#include "kerf/base/letter_case.h"
 #include "kerf/io/byte_order.h"
 #include "kerf/io/message.h"
 #include "kerf/io/output_file.h"
@@ -52,15 +53,9 @@ unsigned char to_byte(float value) {
   return static_cast<unsigned char>(value * 255 + 0.5F);
 }
 
-char lower(char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
 bool has_extension(std::string_view path, std::string_view extension) {
-  if (path.size() < extension.size()) return false;
-  const std::string_view end = path.substr(path.size() - extension.size());
-  for (size_t i = 0; i < end.size(); ++i) {
-    if (lower(end[i]) != extension[i]) return false;
-  }
-  return true;
+  return path.size() >= extension.size() &&
+         equals_ignoring_case(path.substr(path.size() - extension.size()), extension);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "kerf/base/error.h"
+#include "kerf/base/letter_case.h"
 #include "kerf/base/nearest_word.h"
 #include "kerf/io/assimp_model.h"
 #include "kerf/io/gltf.h"
@@ -36,9 +37,7 @@ constexpr ModelFormat kFormats[] = {
 
 /// What a name ends with, from its last point on, in small letters.
 std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return extension;
+  return lower_case(std::filesystem::path(path).extension().string());
 }
 
 }  // namespace

@@ -3,15 +3,16 @@
 #include <utility>
 
 #include "kerf/base/error.h"
+#include "kerf/base/letter_case.h"
 #include "kerf/io/model.h"
 #include "kerf/io/yaml_scene.h"
 
 namespace kerf {
 namespace {
 
-bool ends_with_yaml(std::string path) {
-  for (char& c : path) c = 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return path.ends_with(".yaml") || path.ends_with(".yml");
+bool ends_with_yaml(const std::string& path) {
+  const std::string name = lower_case(path);
+  return name.ends_with(".yaml") || name.ends_with(".yml");
 }
 
 SceneDescription read_bare_model(const std::string& path) {

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "kerf/base/error.h"
+#include "kerf/base/letter_case.h"
 #include "kerf/base/nearest_word.h"
 #include "kerf/io/byte_order.h"
 #include "kerf/io/mapped_file.h"
@@ -20,11 +21,6 @@ constexpr size_t kHeadSize = 84;   // 80 bytes of anything and the number of fac
 constexpr size_t kFacetSize = 50;  // normal, three corners, two bytes
 
 bool is_blank(char c) { return c == ' ' || ('\t' <= c && c <= '\r'); }
-
-bool equals_ignoring_case(std::string_view word, std::string_view lower_case) {
-  return std::equal(word.begin(), word.end(), lower_case.begin(), lower_case.end(),
-                    [](char a, char b) { return ('A' <= a && a <= 'Z' ? a - 'A' + 'a' : a) == b; });
-}
 
 // --- binary ---------------------------------------------------------------------------------------------------------
 

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "kerf/base/error.h"
+#include "kerf/base/letter_case.h"
 #include "kerf/io/mapped_file.h"
 #include "kerf/io/texture/texture_check.h"
 
@@ -35,8 +36,8 @@
 namespace kerf {
 namespace {
 
-bool ends_like_texture(std::string name) {
-  for (char& c : name) c = 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+bool ends_like_texture(const std::string& path) {
+  const std::string name = lower_case(path);
   for (const char* extension : {".png", ".jpg", ".jpeg", ".tga", ".bmp"}) {
     if (name.ends_with(extension)) return true;
   }

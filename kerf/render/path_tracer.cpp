@@ -254,7 +254,7 @@ std::vector<Tile> tiles_of(uint32_t width, uint32_t height) {
 
 void write_means(const Film& film, Image& image) {
   for (size_t i = 0; i < film.sums.size(); ++i) {
-    const Vec3d mean = film.sums[i] / std::max(1.0, double{static_cast<double>(film.samples[i])});
+    const Vec3d mean = film.sums[i] / static_cast<double>(std::max(1U, film.samples[i]));
     for (uint32_t c = 0; c < 3; ++c) image.pixels[3 * i + c] = static_cast<float>(mean[c]);
   }
 }

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "kerf/base/error.h"
+#include "kerf/base/letter_case.h"
 #include "kerf/io/message.h"
 
 namespace {
@@ -32,15 +33,6 @@ void aiAssertViolation(const char* condition, const char* file, int line) {
 namespace kerf {
 namespace {
 
-bool equal_but_for_case(std::string_view text, std::string_view small) {
-  if (text.size() != small.size()) return false;
-  for (size_t i = 0; i < text.size(); ++i) {
-    const char c = 'A' <= text[i] && text[i] <= 'Z' ? static_cast<char>(text[i] - 'A' + 'a') : text[i];
-    if (c != small[i]) return false;
-  }
-  return true;
-}
-
 /// Assimp takes any STEP file for a building. One of a CAD part has curved surfaces, of which it would show none.
 void check_step(std::string_view text, const std::string& path) {
   constexpr size_t kFirst = 256, kHeader = size_t{1} << 16;
@@ -50,7 +42,7 @@ void check_step(std::string_view text, const std::string& path) {
   const size_t begin = schema == std::string_view::npos ? schema : header.find('\'', schema);
   if (begin == std::string_view::npos) return;
   const std::string_view name = header.substr(begin + 1, header.find('\'', begin + 1) - begin - 1);
-  if (equal_but_for_case(name.substr(0, 3), "ifc")) return;
+  if (equals_ignoring_case(name.substr(0, 3), "ifc")) return;
   throw Error(
       ErrorCode::file, path,
       fmt::format("is a STEP file of schema {}, a part with curved surfaces (B-rep), which cannot be read; save "
@@ -94,7 +86,7 @@ void check_for_assimp(std::span<const char> bytes, const std::string& path) {
   const std::string_view text(bytes.data(), bytes.size());
   check_step(text, path);
   const size_t point = path.rfind('.');
-  if (point != std::string::npos && equal_but_for_case(std::string_view(path).substr(point), ".off")) {
+  if (point != std::string::npos && equals_ignoring_case(std::string_view(path).substr(point), ".off")) {
     check_off(text, path);
   }
 }

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "kerf/base/error.h"
+#include "kerf/base/letter_case.h"
 #include "kerf/io/message.h"
 #include "kerf/io/texture_read.h"
 
@@ -18,11 +19,6 @@ namespace {
 float share(float value) { return value > 0 ? std::min(value, 1.F) : 0.F; }  // NaN too
 
 Vec3f color_of(const aiColor3D& color) { return {share(color.r), share(color.g), share(color.b)}; }
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return text;
-}
 
 /// Keeps `value` where the material has no such number.
 void get(const aiMaterial& from, const char* key, unsigned int type, unsigned int index, float& value) {

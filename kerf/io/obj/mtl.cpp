@@ -8,6 +8,7 @@
 #include <optional>
 #include <unordered_set>
 
+#include "kerf/base/letter_case.h"
 #include "kerf/io/message.h"
 #include "kerf/io/obj/mtl_keywords.h"
 #include "kerf/io/obj/obj_cursor.h"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "kerf/base/letter_case.h"
 #include "kerf/base/nearest_word.h"
 #include "kerf/io/message.h"
 #include "kerf/io/obj/obj_cursor.h"
@@ -40,8 +41,6 @@ constexpr MtlMapOption kMapOptions[] = {{"-blendu", 1, 1}, {"-blendv", 1, 1},   
                                         {"-o", 1, 3},      {"-s", 1, 3},         {"-t", 1, 3},       {"-texres", 1, 1},
                                         {"-type", 1, 1},   {"-colorspace", 1, 1}};
 
-char lower(char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
-
 [[noreturn]] void fail(const char* what, std::string_view word, const std::vector<std::string_view>& menu) {
   const std::string_view nearest = nearest_word(word, menu);
   throw ObjFault{word.data(), fmt::format("unknown {} {}{}", what, quoted(word),
@@ -49,10 +48,6 @@ char lower(char c) { return 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + '
 }
 
 }  // namespace
-
-bool equals_ignoring_case(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
-}
 
 MtlKeyword find_mtl_keyword(std::string_view word) {
   const auto is_word = [&](std::string_view known) { return equals_ignoring_case(known, word); };

@@ -36,7 +36,4 @@ struct MtlMapOption {
 /// As find_mtl_keyword().
 const MtlMapOption& find_mtl_map_option(std::string_view word);
 
-/// Whether the words are equal but for the case of their letters.
-bool equals_ignoring_case(std::string_view a, std::string_view b);
-
 }  // namespace kerf
