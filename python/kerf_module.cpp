@@ -43,6 +43,8 @@ const char* code_name(ErrorCode code) {
       return "file";
     case ErrorCode::too_large:
       return "too_large";
+    case ErrorCode::stopped:
+      return "stopped";
   }
   return "";
 }
@@ -227,7 +229,8 @@ class MeshScene {
                     "degenerate"_a = r.degenerate, "references"_a = r.references,
                     "references_per_primitive"_a = r.references_per_primitive, "sa_max"_a = r.sa_max,
                     "capped"_a = r.capped, "bytes"_a = r.bytes, "nodes"_a = r.nodes, "leaves"_a = r.leaves,
-                    "depth"_a = r.depth, "sah_cost"_a = r.sah_cost, "tree_hash"_a = r.tree_hash,
+                    "depth"_a = r.depth, "largest_leaf"_a = r.largest_leaf, "sah_cost"_a = r.sah_cost,
+                    "tree_hash"_a = r.tree_hash,
                     "seconds"_a = py::dict("references"_a = r.seconds.references, "split"_a = r.seconds.split,
                                            "build"_a = r.seconds.build, "layout"_a = r.seconds.layout,
                                            "total"_a = r.seconds.total));
@@ -246,9 +249,11 @@ py::list menu_list() {
   for (const MenuEntry& entry : menu()) {
     py::list options;
     for (const OptionSpec& spec : entry.options) {
+      py::list words;
+      for (const std::string_view word : spec.words) words.append(word);
       options.append(py::dict("name"_a = spec.name, "sentence"_a = spec.sentence, "default"_a = spec.fallback,
                               "least"_a = spec.least, "above_least"_a = spec.above_least, "most"_a = spec.most,
-                              "whole"_a = spec.whole));
+                              "whole"_a = spec.whole, "words"_a = words));
     }
     all.append(py::dict("kind"_a = entry.kind, "name"_a = entry.name, "sentence"_a = entry.sentence,
                         "source"_a = entry.source, "options"_a = options));

@@ -12,11 +12,11 @@
 
 #include "kerf/base/error.h"
 #include "kerf/geometry/prepared_ray.h"
-#include "kerf/scene/menu.h"
 #include "kerf/scene/scene.h"
 #include "tests/support/error_of.h"
 #include "tests/support/property.h"
 #include "tests/support/random.h"
+#include "tests/support/structures.h"
 
 namespace kerf::test {
 namespace {
@@ -24,17 +24,9 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
-/// Every builder of the menu, plain and with about two references per primitive, and brute force.
+/// Everything that rays can be traced through, plain and with about two references per primitive.
 const std::vector<std::string>& structures() {
-  static const std::vector<std::string> all = [] {
-    std::vector<std::string> names;
-    for (const MenuEntry& entry : menu()) {
-      const std::string name(entry.name);
-      if (entry.kind != "splitter") names.push_back(name);
-      if (entry.kind == "builder") names.push_back("early_split(budget=2)+" + name);
-    }
-    return names;
-  }();
+  static const std::vector<std::string> all = all_pipelines();
   return all;
 }
 

@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "kerf/base/error.h"
-#include "kerf/scene/menu.h"
 #include "tests/support/radiance.h"
+#include "tests/support/structures.h"
 
 namespace kerf {
 namespace {
@@ -78,15 +78,11 @@ TEST(PathTracer, AnotherSeedGivesAnotherNoiseAroundTheSamePicture) {
 TEST(PathTracer, EveryStructureGivesThePictureOfBruteForce) {
   const Image brute = render(small(4, 5), "brute_force");
   int compared = 0;
-  for (const MenuEntry& entry : menu()) {
-    if (entry.kind == "splitter") continue;
-    const std::string name(entry.name);
-    EXPECT_EQ(brute.pixels, render(small(4, 5), name).pixels) << name;
-    if (entry.kind != "builder") continue;
-    EXPECT_EQ(brute.pixels, render(small(4, 5), "early_split(budget=2)+" + name).pixels) << name;
+  for (const std::string& structure : test::all_pipelines()) {
+    EXPECT_EQ(brute.pixels, render(small(4, 5), structure).pixels) << structure;
     ++compared;
   }
-  EXPECT_GE(compared, 4);
+  EXPECT_GE(compared, 8);
 }
 
 TEST(PathTracer, MoreSamplesAreNearerToTheTruth) {

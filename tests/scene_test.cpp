@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "kerf/base/error.h"
-#include "kerf/scene/menu.h"
 #include "kerf/scene/scene.h"
 #include "tests/support/random.h"
+#include "tests/support/structures.h"
 
 #if defined(__SSE2__)
 #include <xmmintrin.h>
@@ -209,9 +209,7 @@ TEST(Scene, TheCallersFloatingPointModeChangesNothing) {
       spheres.push_back({size * random.vector(), 0.1F * size});
       for (int k = 0; k < 10; ++k) rays.push_back({.origin = size * random.vector(), .direction = random.vector()});
     }
-    for (const MenuEntry& entry : menu()) {
-      if (entry.kind == "splitter") continue;
-      const std::string name = (entry.kind == "builder" ? "early_split(budget=2)+" : "") + std::string(entry.name);
+    for (const std::string& name : all_pipelines()) {
       Scene plain, hostile;
       for (Scene* scene : {&plain, &hostile}) {
         scene->add(mesh_of(vertices, triangles));

@@ -31,7 +31,8 @@ nlohmann::ordered_json menu_json() {
                          {"least", number(spec.least)},
                          {"most", number(spec.most)},
                          {"above_least", spec.above_least},
-                         {"whole", spec.whole}});
+                         {"whole", spec.whole},
+                         {"words", spec.words}});
     }
     all.push_back({{"kind", entry.kind},
                    {"name", entry.name},
@@ -55,7 +56,8 @@ nlohmann::ordered_json menu_json() {
 
 void print_menu() {
   fmt::print(
-      "A structure is a pipeline: splitters, then one builder or structure, joined by '+', such as\n"
+      "A structure is a pipeline: perhaps a splitter, then a builder and perhaps a layout, or a structure, joined\n"
+      "by '+', such as\n"
       "  early_split(budget=1.5)+binned_sah(bins=32)\n");
   std::string_view kind;
   for (const MenuEntry& entry : menu()) {
@@ -63,7 +65,7 @@ void print_menu() {
     fmt::print("  {:<16}{}\n", entry.name, entry.sentence);
     if (!entry.source.empty()) fmt::print("  {:<16}{}\n", "", entry.source);
     for (const OptionSpec& spec : entry.options) {
-      fmt::print("  {:<18}{} = {}: {}\n", "", spec.name, to_text(spec.fallback), spec.sentence);
+      fmt::print("  {:<18}{} = {}: {}\n", "", spec.name, spec.text_of(spec.fallback), spec.sentence);
     }
   }
   fmt::print("\nviews\n  {:<16}{}\n", kBeauty, kBeautySentence);

@@ -136,6 +136,7 @@ Json report_json(const BuildReport& r) {
           {"nodes", r.nodes},
           {"leaves", r.leaves},
           {"depth", r.depth},
+          {"largest_leaf", r.largest_leaf},
           {"sah_cost", r.sah_cost},
           {"tree_hash", fmt::format("{:016x}", r.tree_hash)},
           {"seconds",

@@ -13,6 +13,7 @@ enum class ErrorCode {
   not_built,         ///< a query before build()
   file,              ///< a file that cannot be read or written, or whose content is wrong
   too_large,         ///< more primitives or references than 2^31 - 1
+  stopped,           ///< a WorkLimit was reached
 };
 
 /// The one exception that Kerf throws: bad input. `place` says where ("geometry 0, vertex 17",

@@ -26,13 +26,51 @@ std::string unknown_option(std::span<const OptionSpec> specs, std::string_view n
 }
 
 std::string range_text(const OptionSpec& spec) {
+  if (!spec.words.empty()) {
+    std::string text;
+    for (const std::string_view word : spec.words) text += (text.empty() ? "" : " or ") + std::string(word);
+    return text;
+  }
   std::string text = spec.whole ? "a whole number " : "";
   text += (spec.above_least ? "above " : "at least ") + to_text(spec.least);
   if (!std::isinf(spec.most)) text += " and at most " + to_text(spec.most);
   return text;
 }
 
+/// The number that a text means for an option; throws Error(invalid_option).
+double parse_value(std::string_view owner, const OptionSpec& spec, std::string_view text) {
+  const std::string place(owner);
+  if (!spec.words.empty()) {
+    const auto found = std::find(spec.words.begin(), spec.words.end(), text);
+    if (found != spec.words.end()) return static_cast<double>(found - spec.words.begin());
+    throw Error(ErrorCode::invalid_option, place,
+                std::string(spec.name) + "=" + std::string(text) + " is not known" + suggestion(text, spec.words));
+  }
+  double value = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (status == std::errc::result_out_of_range) {
+    throw Error(ErrorCode::invalid_option, place, std::string(spec.name) + ": the value is out of range");
+  }
+  if (status != std::errc() || end != text.data() + text.size()) {
+    const bool is_auto = text.starts_with("auto");
+    throw Error(ErrorCode::invalid_option, place,
+                std::string(spec.name) + ": " +
+                    (is_auto ? "automatic splitting is not there yet; give a number" : "expected a number"));
+  }
+  return value;
+}
+
 }  // namespace
+
+std::string OptionSpec::text_of(double value) const {
+  return words.empty() ? to_text(value) : std::string(words[static_cast<size_t>(value)]);
+}
+
+void OptionValues::set(std::string_view owner, std::string_view name, std::string_view value) {
+  const OptionSpec* spec = find(specs_, name);
+  // An unknown name is refused below, whatever its value.
+  set(owner, name, spec != nullptr ? parse_value(owner, *spec, value) : 0);
+}
 
 void OptionValues::set(std::string_view owner, std::string_view name, double value) {
   const OptionSpec* spec = find(specs_, name);
@@ -60,10 +98,10 @@ double OptionValues::operator[](std::string_view name) const {
   return spec->fallback;
 }
 
-std::vector<std::pair<std::string_view, double>> OptionValues::given() const {
-  std::vector<std::pair<std::string_view, double>> ordered;
+std::vector<std::pair<std::string_view, std::string>> OptionValues::given() const {
+  std::vector<std::pair<std::string_view, std::string>> ordered;
   for (const OptionSpec& spec : specs_) {
-    if (is_set(spec.name)) ordered.emplace_back(spec.name, (*this)[spec.name]);
+    if (is_set(spec.name)) ordered.emplace_back(spec.name, spec.text_of((*this)[spec.name]));
   }
   return ordered;
 }

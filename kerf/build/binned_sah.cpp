@@ -131,14 +131,14 @@ class BinnedSah : public ReferenceOrder {
 
 }  // namespace
 
-Bvh build_binned_sah(std::vector<Reference> references, const OptionValues& options) {
+Bvh build_binned_sah(std::vector<Reference> references, const OptionValues& options, const WorkLimit& limit) {
   if (options.is_set("bins") && options.is_set("planes")) {
     throw Error(ErrorCode::invalid_option, "binned_sah",
                 "bins and planes say the same thing (bins = planes + 1): give one");
   }
   const double bins = options.is_set("planes") ? options["planes"] + 1 : options["bins"];
   BinnedSah partition(std::move(references), static_cast<uint32_t>(bins));
-  return build_top_down(partition, TopDownOptions::from(options));
+  return build_top_down(partition, TopDownOptions::from(options), limit);
 }
 
 }  // namespace kerf

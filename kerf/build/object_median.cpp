@@ -13,9 +13,9 @@ class ObjectMedian : public ReferenceOrder {
 
 }  // namespace
 
-Bvh build_object_median(std::vector<Reference> references, const OptionValues& options) {
+Bvh build_object_median(std::vector<Reference> references, const OptionValues& options, const WorkLimit& limit) {
   ObjectMedian partition(std::move(references));
-  return build_top_down(partition, TopDownOptions::from(options));
+  return build_top_down(partition, TopDownOptions::from(options), limit);
 }
 
 }  // namespace kerf

@@ -28,9 +28,9 @@ class SpatialMedian : public ReferenceOrder {
 
 }  // namespace
 
-Bvh build_spatial_median(std::vector<Reference> references, const OptionValues& options) {
+Bvh build_spatial_median(std::vector<Reference> references, const OptionValues& options, const WorkLimit& limit) {
   SpatialMedian partition(std::move(references));
-  return build_top_down(partition, TopDownOptions::from(options));
+  return build_top_down(partition, TopDownOptions::from(options), limit);
 }
 
 }  // namespace kerf

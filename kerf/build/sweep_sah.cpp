@@ -128,9 +128,9 @@ class SweepSah {
 
 }  // namespace
 
-Bvh build_sweep_sah(std::vector<Reference> references, const OptionValues& options) {
+Bvh build_sweep_sah(std::vector<Reference> references, const OptionValues& options, const WorkLimit& limit) {
   SweepSah partition(std::move(references));
-  return build_top_down(partition, TopDownOptions::from(options));
+  return build_top_down(partition, TopDownOptions::from(options), limit);
 }
 
 }  // namespace kerf

@@ -7,6 +7,7 @@
 #include "kerf/base/error.h"
 #include "kerf/base/options.h"
 #include "kerf/base/parallel.h"
+#include "kerf/base/work_limit.h"
 #include "kerf/references/reference.h"
 #include "kerf/tree/bvh.h"
 
@@ -79,8 +80,8 @@ inline void check_depth(size_t references, const TopDownOptions& options) {
 template <Partition P>
 class TopDown {
  public:
-  TopDown(P& partition, const TopDownOptions& options, std::vector<BvhNode>& nodes)
-      : partition_(partition), options_(options), nodes_(nodes) {}
+  TopDown(P& partition, const TopDownOptions& options, const WorkLimit& limit, std::vector<BvhNode>& nodes)
+      : partition_(partition), options_(options), limit_(limit), nodes_(nodes) {}
 
   void build(const Subset& subset, uint32_t node, size_t place, uint32_t depth) {
     const std::optional<Halves> halves = divide(subset, depth);
@@ -95,6 +96,7 @@ class TopDown {
       build(halves->right, child + 1, place + 2 * size_t{halves->left.count()}, depth + 1);
     };
     if (subset.count() >= kParallelCount) {
+      limit_.check();
       parallel_invoke(build_left, build_right);
     } else {
       build_left();
@@ -128,6 +130,7 @@ class TopDown {
 
   P& partition_;
   const TopDownOptions& options_;
+  const WorkLimit& limit_;
   std::vector<BvhNode>& nodes_;
 };
 
@@ -154,14 +157,15 @@ inline std::vector<BvhNode> compacted(const std::vector<BvhNode>& sparse) {
 }  // namespace detail
 
 /// Builds a tree from the root down: recursion, leaf decision, depth bound and threads for every partition.
-/// Throws Error(invalid_option) if the depth allowed cannot hold the references.
+/// Throws Error(invalid_option) if the depth allowed cannot hold the references, Error(stopped) at the limit.
 template <Partition P>
-Bvh build_top_down(P& partition, const TopDownOptions& options) {
+Bvh build_top_down(P& partition, const TopDownOptions& options, const WorkLimit& limit = {}) {
   const Subset whole = partition.whole();
   if (whole.count() == 0) return {};
   detail::check_depth(whole.count(), options);
+  limit.check(3 * size_t{whole.count()} * sizeof(BvhNode));
   std::vector<BvhNode> sparse(2 * size_t{whole.count()} - 1);
-  detail::TopDown<P>(partition, options, sparse).build(whole, 0, 1, 0);
+  detail::TopDown<P>(partition, options, limit, sparse).build(whole, 0, 1, 0);
   Bvh bvh;
   bvh.nodes = detail::compacted(sparse);
   std::vector<BvhNode>().swap(sparse);

@@ -23,4 +23,18 @@ Bvh2 make_bvh2(Bvh&& bvh) {
   return layout;
 }
 
+Bvh make_bvh(const Bvh2& layout) {
+  Bvh bvh;
+  if (layout.is_empty()) return bvh;
+  const auto node_of = [](const Bvh2Child& child) {
+    return BvhNode{child.lower, child.count > 0 ? child.first : 2 * child.first + 1, child.upper, child.count};
+  };
+  bvh.nodes.push_back(node_of(layout.root));
+  for (const Bvh2Node& node : layout.nodes) {
+    for (const Bvh2Child& child : node.child) bvh.nodes.push_back(node_of(child));
+  }
+  bvh.slots = layout.slots;
+  return bvh;
+}
+
 }  // namespace kerf

@@ -39,4 +39,7 @@ struct Bvh2 {
 /// Takes the slots over, so that they are not held twice.
 Bvh2 make_bvh2(Bvh&& bvh);
 
+/// The tree that a layout was made from.
+Bvh make_bvh(const Bvh2& layout);
+
 }  // namespace kerf

@@ -16,16 +16,16 @@ constexpr OptionSpec kEarlySplitOptions[] = {
     {"budget", "instead of sa_max: as finely as this many references per primitive allow", 1.5, 1, kMostPerPrimitive},
 };
 
-EarlySplitResult split_early(std::span<const Reference> whole, const Clipper& clipper, const OptionValues& values) {
+EarlySplitResult split_early(const SplitInput& input, const OptionValues& values) {
   if (values.is_set("budget")) {
     if (values.is_set("sa_max") || values.is_set("cap")) {
       throw Error(ErrorCode::invalid_option, "early_split", "budget replaces sa_max and cap: give one or the other");
     }
-    EarlySplitResult result = early_split(whole, clipper, EarlySplit::with_budget(values["budget"]));
+    EarlySplitResult result = early_split(input.whole, input.clipper, EarlySplit::with_budget(values["budget"]));
     result.capped = false;  // no limit was asked for
     return result;
   }
-  return early_split(whole, clipper, {values["sa_max"], values["cap"]});
+  return early_split(input.whole, input.clipper, {values["sa_max"], values["cap"]});
 }
 
 constexpr SplitterEntry kSplitters[] = {

@@ -4,9 +4,18 @@
 #include <string_view>
 
 #include "kerf/base/options.h"
+#include "kerf/base/work_limit.h"
 #include "kerf/references/early_split.h"
 
 namespace kerf {
+
+/// What a splitter works on: references of whole primitives.
+struct SplitInput {
+  std::span<const Geometry> geometries;
+  std::span<const Reference> whole;
+  Clipper clipper;
+  WorkLimit limit;
+};
 
 /// One splitter of the menu: references in, more references out.
 struct SplitterEntry {
@@ -14,7 +23,7 @@ struct SplitterEntry {
   std::string_view sentence;
   std::string_view source;
   std::span<const OptionSpec> options;
-  EarlySplitResult (*split)(std::span<const Reference> whole, const Clipper& clipper, const OptionValues& options);
+  EarlySplitResult (*split)(const SplitInput& input, const OptionValues& options);
 };
 
 std::span<const SplitterEntry> splitters();

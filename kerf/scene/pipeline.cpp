@@ -1,8 +1,6 @@
 #include "kerf/scene/pipeline.h"
 
 #include <algorithm>
-#include <charconv>
-#include <limits>
 
 #include "kerf/base/error.h"
 #include "kerf/base/nearest_word.h"
@@ -59,7 +57,7 @@ class Parser {
     skip_spaces();
     const size_t begin = at_;
     starts_.push_back(begin);
-    const std::string_view name = parse_name("the name of a splitter, builder or structure");
+    const std::string_view name = parse_name("the name of a splitter, builder, layout or structure");
     const std::span<const MenuEntry> all = menu();
     const auto found = std::find_if(all.begin(), all.end(), [&](const MenuEntry& entry) { return entry.name == name; });
     if (found == all.end()) fail_at(begin, unknown(name));
@@ -81,7 +79,7 @@ class Parser {
       if (name == "auto") fail_at(begin, "automatic splitting is not there yet; give sa_max or budget");
       fail("expected '=' and a value after '" + std::string(name) + "'");
     }
-    const double value = parse_value();
+    const std::string_view value = parse_value();
     try {
       stage.options.set(stage.entry->name, name, value);
     } catch (const Error& error) {
@@ -89,18 +87,14 @@ class Parser {
     }
   }
 
-  double parse_value() {
+  /// A number or a word.
+  std::string_view parse_value() {
     skip_spaces();
-    const char* first = text_.data() + at_;
-    double value = 0;
-    const auto [end, status] = std::from_chars(first, text_.data() + text_.size(), value);
-    if (status == std::errc::result_out_of_range) fail("the value is out of range");
-    if (status != std::errc()) {
-      if (text_.substr(at_).starts_with("auto")) fail("automatic splitting is not there yet; give a number");
-      fail("expected a number");
-    }
-    at_ += static_cast<size_t>(end - first);
-    return value;
+    constexpr std::string_view kSigns = ".+-";
+    const size_t begin = at_;
+    while (at_ < text_.size() && (is_name_character(text_[at_]) || kSigns.find(text_[at_]) != kSigns.npos)) ++at_;
+    if (at_ == begin) fail("expected a value");
+    return text_.substr(begin, at_ - begin);
   }
 
   static std::string unknown(std::string_view name) {
@@ -112,15 +106,24 @@ class Parser {
   void check_order(const Pipeline& pipeline) const {
     const size_t last = pipeline.stages.size() - 1;
     for (size_t i = 0; i <= last; ++i) {
-      const MenuEntry& entry = *pipeline.stages[i].entry;
-      const std::string name(entry.name);
-      if (i < last && entry.kind != "splitter") fail_at(starts_[i + 1], "nothing can follow " + name + " yet");
-      if (i == last && entry.kind == "splitter")
-        fail_at(starts_[i], "a builder must follow " + name + ", as in " + name + "+binned_sah");
+      const std::string_view kind = pipeline.stages[i].entry->kind;
+      const std::string name(pipeline.stages[i].entry->name);
+      const std::string_view before = i > 0 ? pipeline.stages[i - 1].entry->kind : "";
+      if (kind == "layout" && before != "builder") {
+        fail_at(starts_[i], "a builder must stand right before " + name + ", as in binned_sah+" + name);
+      }
       // Its cap counts references for each primitive, and to a second one pieces would pass for primitives.
-      if (i > 0 && entry.kind == "splitter") fail_at(starts_[i], "references can be split once only");
-      if (i > 0 && entry.kind == "structure")
-        fail_at(starts_[i], name + " tests whole primitives: no splitter can stand before it");
+      if (kind == "splitter" && before == "splitter") fail_at(starts_[i], "references can be split once only");
+      if (kind != "layout" && !before.empty() && before != "splitter") {
+        fail_at(starts_[i], "only a layout can follow a builder, and nothing a layout or structure");
+      }
+      if (i == last && kind == "splitter") {
+        fail_at(starts_[i], "a builder must follow " + name + ", as in " + name + "+binned_sah");
+      }
+      const auto* structure = std::get_if<const StructureEntry*>(&pipeline.stages[i].entry->entry);
+      if (structure != nullptr && !before.empty() && !(*structure)->takes_pieces) {
+        fail_at(starts_[i], name + " takes whole primitives: no splitter can stand before it");
+      }
     }
   }
 
@@ -138,7 +141,7 @@ std::string Pipeline::text() const {
     text += stage.entry->name;
     const auto given = stage.options.given();
     for (size_t i = 0; i < given.size(); ++i) {
-      text += (i == 0 ? "(" : ",") + std::string(given[i].first) + "=" + to_text(given[i].second);
+      text += (i == 0 ? "(" : ",") + std::string(given[i].first) + "=" + given[i].second;
     }
     if (!given.empty()) text += ')';
   }

@@ -8,13 +8,14 @@
 
 namespace kerf {
 
-/// One stage of a pipeline with its options.
+/// One stage of a pipeline with its options. Valid until something is added to the menu.
 struct Stage {
   const MenuEntry* entry = nullptr;
   OptionValues options;
 };
 
-/// What is done to make a structure, in the order of the flow: any splitters, then one builder or structure.
+/// What is done to make a structure, in the order of the flow: perhaps a splitter, then a builder and perhaps a
+/// layout, or a structure.
 struct Pipeline {
   std::vector<Stage> stages;
 

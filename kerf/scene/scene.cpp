@@ -10,8 +10,6 @@
 #include "kerf/base/fp_environment.h"
 #include "kerf/base/parallel.h"
 #include "kerf/scene/pipeline.h"
-#include "kerf/trace/brute_force.h"
-#include "kerf/trace/trace_bvh2.h"
 
 namespace kerf {
 namespace {
@@ -25,6 +23,8 @@ constexpr TraceTable kNotBuilt = {
     [](const void*, const Ray&) -> bool { refuse_not_built(); },
     [](const void*, const Ray&, TraceCounts&) -> Hit { refuse_not_built(); },
     [](const void*, const Ray&, TraceCounts&) -> bool { refuse_not_built(); },
+    [](const void*, std::span<const Ray>, std::span<Hit>) { refuse_not_built(); },
+    [](const void*, std::span<const Ray>, std::span<Hit>, TraceCounts&) { refuse_not_built(); },
 };
 
 /// Seconds since the last call.
@@ -39,17 +39,32 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+template <class Result>
+void check_lengths(std::span<const Ray> rays, std::span<Result> results) {
+  if (rays.size() == results.size()) return;
+  throw Error(ErrorCode::invalid_argument, "batch",
+              std::to_string(rays.size()) + " rays, but room for " + std::to_string(results.size()) + " results");
+}
+
+/// query(begin, end) on stretches of the rays.
 template <class Result, class F>
 void run_batch(std::span<const Ray> rays, std::span<Result> results, int threads, F&& query) {
-  if (rays.size() != results.size()) {
-    throw Error(ErrorCode::invalid_argument, "batch",
-                std::to_string(rays.size()) + " rays, but room for " + std::to_string(results.size()) + " results");
+  check_lengths(rays, results);
+  if (threads == 1) return query(0, rays.size());
+  with_threads(threads, [&] { parallel_for(rays.size(), 1024, query); });
+}
+
+/// The builder's options, with leaves as small as the layout needs them.
+OptionValues options_for(const Stage& builder, const LayoutEntry& layout) {
+  OptionValues options = builder.options;
+  if (layout.leaf_size == 0) return options;
+  if (!options.is_set("leaf")) {
+    options.set(builder.entry->name, "leaf", layout.leaf_size);
+  } else if (options["leaf"] > layout.leaf_size) {
+    throw Error(ErrorCode::invalid_option, std::string(layout.name),
+                "it needs leaves of at most " + std::to_string(layout.leaf_size) + ": leave out the builder's 'leaf'");
   }
-  const auto run = [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) results[i] = query(rays[i]);
-  };
-  if (threads == 1) return run(0, rays.size());
-  with_threads(threads, [&] { parallel_for(rays.size(), 1024, run); });
+  return options;
 }
 
 }  // namespace
@@ -58,79 +73,88 @@ struct Scene::Added {
   std::vector<Geometry> geometries;
 };
 
-/// One finished build. Never moved: the tracer's spans point into it.
+/// One finished build. Never moved: the structure's spans point into it.
 struct Scene::Built {
   std::vector<Geometry> geometries;
-  std::variant<Bvh2Tracer, BruteForce> tracer;
-  const TraceTable* table = nullptr;
+  std::unique_ptr<const Structure> structure;
   Box3f bounds;
   BuildReport report;
 
-  Built(std::vector<Geometry> added, const Pipeline& pipeline, bool skip_invalid);
-  void build_tree(std::vector<Reference> references, const Stage& stage, Stopwatch& watch);
-  const void* data() const {
-    return std::visit([](const auto& t) -> const void* { return &t; }, tracer);
-  }
+  Built(std::vector<Geometry> added, const Pipeline& pipeline, const BuildOptions& options);
+  StructureInput make_input(const Pipeline& pipeline, const BuildOptions& options, Stopwatch& watch);
+  void make_structure(StructureInput input, std::span<const Stage> stages, Stopwatch& watch);
+  void describe(size_t kept);
 };
 
-Scene::Built::Built(std::vector<Geometry> added, const Pipeline& pipeline, bool skip_invalid)
+Scene::Built::Built(std::vector<Geometry> added, const Pipeline& pipeline, const BuildOptions& options)
     : geometries(std::move(added)) {
   Stopwatch watch;
   report.structure = pipeline.text();
-  report.sa_max = std::numeric_limits<double>::infinity();
-  for (const Geometry& geometry : geometries) report.primitives += primitive_count(geometry);
-  PrimitiveReferences whole = make_references(geometries, skip_invalid);
-  report.invalid = whole.invalid;
-  report.degenerate = whole.degenerate;
-  const size_t kept = whole.references.size();
-  for (const Reference& reference : whole.references) bounds.extend(reference.bounds());
-  report.seconds.references = watch.lap();
-
-  std::vector<Reference> references = std::move(whole.references);
-  const std::span<const Geometry> all = geometries;
-  for (const Stage& stage : pipeline.stages) {
-    const auto* splitter = std::get_if<const SplitterEntry*>(&stage.entry->entry);
-    if (splitter == nullptr) continue;
-    EarlySplitResult split = (*splitter)->split(references, geometry_clipper(all), stage.options);
-    references = std::move(split.references);
-    report.sa_max = std::min(report.sa_max, split.sa_max);
-    report.capped = report.capped || split.capped;
-  }
-  report.references = references.size();
-  report.references_per_primitive = kept > 0 ? static_cast<double>(references.size()) / static_cast<double>(kept) : 0;
-  report.seconds.split = watch.lap();
-  build_tree(std::move(references), pipeline.stages.back(), watch);
+  StructureInput input = make_input(pipeline, options, watch);
+  const size_t first = pipeline.stages.front().entry->kind == "splitter" ? 1 : 0;
+  const size_t kept = report.primitives - report.invalid - report.degenerate;
+  make_structure(std::move(input), std::span(pipeline.stages).subspan(first), watch);
+  describe(kept);
   const auto& s = report.seconds;
   report.seconds.total = s.references + s.split + s.build + s.layout;
 }
 
-void Scene::Built::build_tree(std::vector<Reference> references, const Stage& stage, Stopwatch& watch) {
-  const auto* builder = std::get_if<const BuilderEntry*>(&stage.entry->entry);
-  if (builder == nullptr) {
-    std::vector<LeafSlot> slots;
-    slots.reserve(references.size());
-    for (const Reference& reference : references) slots.push_back({reference.geometry, reference.primitive});
-    report.bytes = tracer.emplace<BruteForce>(geometries, slots).bytes();
+StructureInput Scene::Built::make_input(const Pipeline& pipeline, const BuildOptions& options, Stopwatch& watch) {
+  report.sa_max = std::numeric_limits<double>::infinity();
+  for (const Geometry& geometry : geometries) report.primitives += primitive_count(geometry);
+  PrimitiveReferences whole = make_references(geometries, options.skip_invalid);
+  report.invalid = whole.invalid;
+  report.degenerate = whole.degenerate;
+  for (const Reference& reference : whole.references) bounds.extend(reference.bounds());
+  report.seconds.references = watch.lap();
+
+  const std::span<const Geometry> all = geometries;
+  StructureInput input{all, std::move(whole.references), false, options.limit};
+  input.limit.check();
+  if (const auto* splitter = std::get_if<const SplitterEntry*>(&pipeline.stages.front().entry->entry)) {
+    const size_t kept = input.references.size();
+    EarlySplitResult split = (*splitter)->split({all, input.references, geometry_clipper(all), options.limit},
+                                                pipeline.stages.front().options);
+    input.references = std::move(split.references);
+    input.is_split = input.references.size() > kept;
+    report.sa_max = split.sa_max;
+    report.capped = split.capped;
+  }
+  report.seconds.split = watch.lap();
+  return input;
+}
+
+/// `stages`: a structure, or a builder with or without a layout.
+void Scene::Built::make_structure(StructureInput input, std::span<const Stage> stages, Stopwatch& watch) {
+  if (const auto* entry = std::get_if<const StructureEntry*>(&stages[0].entry->entry)) {
+    structure = (*entry)->build(std::move(input), stages[0].options);
     report.seconds.build = watch.lap();
-    table = &brute_force_table();
     return;
   }
-  Bvh bvh = (*builder)->build(std::move(references), stage.options);
-  if (report.references_per_primitive > 1) mark_repeated(bvh, geometries);
+  const auto& builder = *std::get<const BuilderEntry*>(stages[0].entry->entry);
+  const LayoutEntry& layout =
+      stages.size() > 1 ? *std::get<const LayoutEntry*>(stages[1].entry->entry) : layouts().front();
+  const OptionValues options = options_for(stages[0], layout);
+  Bvh bvh = builder.build(std::exchange(input.references, {}), options, input.limit);
+  if (input.is_split) mark_repeated(bvh, geometries);
   report.seconds.build = watch.lap();
-  const BvhStatistics statistics = measure(bvh);
+  structure = layout.make(std::move(bvh), input, stages.size() > 1 ? stages[1].options : OptionValues(layout.options));
+  report.seconds.layout = watch.lap();
+}
+
+/// Reporting is not building, so no watch runs. `kept`: primitives that can be hit.
+void Scene::Built::describe(size_t kept) {
+  const StructureStatistics statistics = measure(*structure);
+  report.references = statistics.references;
+  report.references_per_primitive =
+      kept > 0 ? static_cast<double>(statistics.references) / static_cast<double>(kept) : 0;
+  report.bytes = structure->bytes();
   report.nodes = statistics.nodes;
   report.leaves = statistics.leaves;
   report.depth = statistics.depth;
-  report.sah_cost = statistics.sah_cost;
-  report.tree_hash = tree_hash(bvh);
-  watch.lap();  // reporting is not building
-  Bvh2Tracer& bvh2 = tracer.emplace<Bvh2Tracer>();
-  bvh2.layout = make_bvh2(std::move(bvh));
-  bvh2.geometries = geometries;
-  report.bytes = bvh2.layout.bytes();
-  report.seconds.layout = watch.lap();
-  table = &bvh2_table();
+  report.largest_leaf = statistics.largest_leaf;
+  report.sah_cost = statistics.cost;
+  report.tree_hash = structure->hash();
 }
 
 Scene::Scene() : added_(std::make_unique<Added>()), table_(&kNotBuilt) {}
@@ -161,18 +185,27 @@ const BuildReport& Scene::build(const BuildOptions& options) {
   std::unique_ptr<const Built> built;
   with_threads(options.threads, [&] {
     const StandardFloat standard;
-    built = std::make_unique<const Built>(added_ ? added_->geometries : std::vector<Geometry>{}, pipeline,
-                                          options.skip_invalid);
+    built = std::make_unique<const Built>(added_ ? added_->geometries : std::vector<Geometry>{}, pipeline, options);
   });
   built_ = std::move(built);
-  table_ = built_->table;
-  data_ = built_->data();
+  table_ = &built_->structure->table();
+  data_ = built_->structure->data();
   return built_->report;
 }
 
 const BuildReport& Scene::report() const {
   if (built_ == nullptr) refuse_not_built();
   return built_->report;
+}
+
+const Structure& Scene::structure() const {
+  if (built_ == nullptr) refuse_not_built();
+  return *built_->structure;
+}
+
+std::span<const Geometry> Scene::geometries() const {
+  if (built_ == nullptr) refuse_not_built();
+  return built_->geometries;
 }
 
 Box3f Scene::bounds() const {
@@ -187,11 +220,20 @@ Vec3f Scene::normal(const Hit& hit) const {
 }
 
 void Scene::closest_hit(std::span<const Ray> rays, std::span<Hit> hits, int threads) const {
-  run_batch(rays, hits, threads, [this](const Ray& ray) { return closest_hit(ray); });
+  run_batch(rays, hits, threads, [&](size_t begin, size_t end) {
+    table_->closest_batch(data_, rays.subspan(begin, end - begin), hits.subspan(begin, end - begin));
+  });
 }
 
 void Scene::any_hit(std::span<const Ray> rays, std::span<uint8_t> hits, int threads) const {
-  run_batch(rays, hits, threads, [this](const Ray& ray) { return static_cast<uint8_t>(any_hit(ray)); });
+  run_batch(rays, hits, threads, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) hits[i] = static_cast<uint8_t>(any_hit(rays[i]));
+  });
+}
+
+void Scene::closest_hit(std::span<const Ray> rays, std::span<Hit> hits, TraceCounts& counts) const {
+  check_lengths(rays, hits);
+  table_->closest_batch_counted(data_, rays, hits, counts);
 }
 
 }  // namespace kerf

@@ -8,16 +8,19 @@
 #include "kerf/geometry/geometry.h"
 #include "kerf/geometry/hit.h"
 #include "kerf/geometry/ray.h"
+#include "kerf/scene/structure.h"
 #include "kerf/trace/trace_table.h"
 
 namespace kerf {
 
 /// How Scene::build() works.
 struct BuildOptions {
-  /// The pipeline: splitters, then a builder or structure, joined by '+', options in parentheses; see menu().
+  /// The pipeline: perhaps a splitter, then a builder and perhaps a layout, or a structure, joined by '+', options in
+  /// parentheses; see menu().
   std::string structure = "binned_sah";
   int threads = 0;            ///< 0: as many as the caller's arena has
   bool skip_invalid = false;  ///< drop primitives that are not finite or have a bad index, instead of an error
+  WorkLimit limit;            ///< when to give up
 };
 
 /// What a build did and what came of it.
@@ -32,9 +35,10 @@ struct BuildReport {
   bool capped = false;  ///< the limit asked for would have passed the cap on references, so it was raised
   size_t bytes = 0;     ///< of what rays are traced through, without the caller's memory
   size_t nodes = 0, leaves = 0;
-  uint32_t depth = 0;      ///< edges from the root to the deepest leaf
-  double sah_cost = 0;     ///< see sah_cost()
-  uint64_t tree_hash = 0;  ///< equal for equal trees; 0 without a tree
+  uint32_t depth = 0;         ///< edges from the root to the deepest leaf
+  uint32_t largest_leaf = 0;  ///< slots
+  double sah_cost = 0;        ///< see Structure::cost()
+  uint64_t tree_hash = 0;     ///< equal for equal trees; 0 without a tree
   struct Seconds {
     double references = 0, split = 0, build = 0, layout = 0, total = 0;
   } seconds;
@@ -65,12 +69,17 @@ class Scene {
   uint32_t add(Strided<Parallelogram> shapes, uint32_t mask = 0xFFFFFFFFU) { return add(Geometry{shapes, mask}); }
 
   /// Makes what was added ready for queries; an empty scene hits nothing. Throws Error for a pipeline that is wrong
-  /// (invalid_option) or a primitive that is (invalid_geometry, naming the first and how many); the scene then answers
-  /// as before.
+  /// (invalid_option), a primitive that is (invalid_geometry, naming the first and how many) or a limit that was
+  /// reached (stopped); the scene then answers as before.
   const BuildReport& build(const BuildOptions& options = {});
 
   /// What the last build did. Throws Error(not_built) before the first.
   const BuildReport& report() const;
+
+  /// What rays are traced through.
+  const Structure& structure() const;
+  /// What was added, as the structure's slots number it.
+  std::span<const Geometry> geometries() const;
 
   /// The box around everything that can be hit; empty where nothing can.
   Box3f bounds() const;
@@ -91,6 +100,8 @@ class Scene {
   /// Throws Error(invalid_argument) if the lengths differ.
   void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, int threads = 0) const;
   void any_hit(std::span<const Ray> rays, std::span<uint8_t> hits, int threads = 0) const;
+  /// On the calling thread, and adds the work done to `counts`.
+  void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, TraceCounts& counts) const;
 
  private:
   struct Added;

@@ -16,9 +16,10 @@ class BruteForce {
   BruteForce() = default;
   BruteForce(std::span<const Geometry> geometries, std::span<const LeafSlot> slots);
 
-  size_t bytes() const {
-    return triangles_.bytes() + (triangle_slots_.size() + other_slots_.size()) * sizeof(LeafSlot);
-  }
+  /// How many primitives it tests.
+  size_t size() const { return triangle_slots_.size() + other_slots_.size(); }
+
+  size_t bytes() const { return triangles_.bytes() + size() * sizeof(LeafSlot); }
 
   template <bool kAny, class Counts>
   Hit trace(const Ray& ray, Counts& counts) const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "kerf/geometry/hit.h"
 #include "kerf/geometry/ray.h"
@@ -31,7 +32,25 @@ struct TraceTable {
   bool (*any)(const void* data, const Ray& ray);
   Hit (*closest_counted)(const void* data, const Ray& ray, TraceCounts& counts);
   bool (*any_counted)(const void* data, const Ray& ray, TraceCounts& counts);
+  /// One hit for each ray, the spans of equal length.
+  void (*closest_batch)(const void* data, std::span<const Ray> rays, std::span<Hit> hits);
+  void (*closest_batch_counted)(const void* data, std::span<const Ray> rays, std::span<Hit> hits, TraceCounts& counts);
 };
+
+namespace detail {
+
+/// A tracer that does better with many rays at once has `template <class Counts> void trace_batch(std::span<const Ray>,
+/// std::span<Hit>, Counts&) const`.
+template <class Tracer, class Counts>
+void trace_batch(const Tracer& tracer, std::span<const Ray> rays, std::span<Hit> hits, Counts& counts) {
+  if constexpr (requires { tracer.template trace_batch<Counts>(rays, hits, counts); }) {
+    tracer.template trace_batch<Counts>(rays, hits, counts);
+  } else {
+    for (size_t i = 0; i < rays.size(); ++i) hits[i] = tracer.template trace<false>(rays[i], counts);
+  }
+}
+
+}  // namespace detail
 
 /// The table of a tracer type: Tracer has `template <bool kAny, class Counts> Hit trace(const Ray&, Counts&) const`,
 /// which for kAny may return any hit.
@@ -50,6 +69,13 @@ inline constexpr TraceTable kTraceTable = {
     },
     [](const void* data, const Ray& ray, TraceCounts& counts) {
       return static_cast<bool>(static_cast<const Tracer*>(data)->template trace<true>(ray, counts));
+    },
+    [](const void* data, std::span<const Ray> rays, std::span<Hit> hits) {
+      NoCounts counts;
+      detail::trace_batch(*static_cast<const Tracer*>(data), rays, hits, counts);
+    },
+    [](const void* data, std::span<const Ray> rays, std::span<Hit> hits, TraceCounts& counts) {
+      detail::trace_batch(*static_cast<const Tracer*>(data), rays, hits, counts);
     },
 };
 

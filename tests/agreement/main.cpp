@@ -16,12 +16,12 @@
 #include "kerf/base/error.h"
 #include "kerf/base/parallel.h"
 #include "kerf/io/ply.h"
-#include "kerf/scene/menu.h"
 #include "kerf/scene/pipeline.h"
 #include "kerf/scene/scene.h"
 #include "tests/agreement/verdict.h"
 #include "tests/support/embree_scene.h"
 #include "tests/support/scenes.h"
+#include "tests/support/structures.h"
 
 namespace kerf::test {
 namespace {
@@ -59,17 +59,6 @@ struct Tally {
            deep <= of(Verdict::oracle_wrong) + of(Verdict::edge_tie);
   }
 };
-
-/// The pipelines compared: every builder of the menu, plain and split.
-std::vector<std::string> default_structures() {
-  std::vector<std::string> all;
-  for (const MenuEntry& entry : menu()) {
-    if (entry.kind != "builder") continue;
-    all.push_back(std::string(entry.name));
-    all.push_back("early_split(budget=2)+" + std::string(entry.name));
-  }
-  return all;
-}
 
 /// What the oracles say about the rays of all cameras of a scene.
 struct Expected {
@@ -181,7 +170,7 @@ int run(const Arguments& arguments) {
     return kSkipped;
   }
   const std::vector<std::string> structures =
-      arguments.structures.empty() ? default_structures() : split_pipeline_list(arguments.structures);
+      arguments.structures.empty() ? all_pipelines() : split_pipeline_list(arguments.structures);
   fmt::print("{:<15} {:<8} {:<40} {:>8} {:>8} {:>6} {:>6} {:>6} {:>6} {:>6} {:>9} {:>7} {:>6}\n", "scene", "turn",
              "structure", "rays", "hits", "edge", "coinc", "oracle", "unexpl", "depth", "max depth", "brute", "differ");
   Tally total;

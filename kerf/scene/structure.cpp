@@ -1,0 +1,43 @@
+#include "kerf/scene/structure.h"
+
+#include <algorithm>
+
+#include "kerf/scene/structures/all.h"
+
+namespace kerf {
+
+double Structure::cost() const {
+  double root = 0, sum = 0;
+  visit_nodes([&](const NodeView& node) {
+    const double area = half_area(node.bounds);
+    if (node.depth == 0) root = area;
+    sum += area * (node.is_leaf ? static_cast<double>(node.slots.size()) : 1);
+  });
+  return root > 0 ? sum / root : 0;
+}
+
+StructureStatistics measure(const Structure& structure) {
+  StructureStatistics statistics;
+  structure.visit_nodes([&](const NodeView& node) {
+    ++statistics.nodes;
+    statistics.depth = std::max(statistics.depth, node.depth);
+    if (!node.is_leaf) return;
+    ++statistics.leaves;
+    statistics.references += node.slots.size();
+    statistics.largest_leaf = std::max(statistics.largest_leaf, static_cast<uint32_t>(node.slots.size()));
+  });
+  statistics.cost = structure.cost();
+  return statistics;
+}
+
+namespace {
+
+constexpr LayoutEntry kLayouts[] = {kBvh2Layout};
+constexpr StructureEntry kStructures[] = {kBruteForceStructure};
+
+}  // namespace
+
+std::span<const LayoutEntry> layouts() { return kLayouts; }
+std::span<const StructureEntry> structures() { return kStructures; }
+
+}  // namespace kerf

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "kerf/scene/structure.h"
+
+namespace kerf {
+
+// The makers of kerf/scene/structures, a file each, and their rows for the tables in structure.cpp.
+
+std::unique_ptr<const Structure> make_bvh2_structure(Bvh bvh, const StructureInput& input, const OptionValues& options);
+inline constexpr LayoutEntry kBvh2Layout = {
+    "bvh2",
+    "a binary tree, the boxes of both children beside each other, one ray at a time; what a builder alone means",
+    "",
+    {},
+    0,
+    make_bvh2_structure};
+
+std::unique_ptr<const Structure> build_brute_force(StructureInput input, const OptionValues& options);
+inline constexpr StructureEntry kBruteForceStructure = {
+    "brute_force", "tests every primitive, without a tree", "", {}, false, build_brute_force};
+
+}  // namespace kerf

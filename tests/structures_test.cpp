@@ -1,0 +1,162 @@
+// Every entry of the menu that rays can be traced through: invariants, coverage, the hits of brute force, limits. An
+// entry gets its rows here by being in the menu.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "kerf/base/error.h"
+#include "kerf/scene/menu.h"
+#include "tests/support/random.h"
+#include "tests/support/random_scene.h"
+#include "tests/support/structure_check.h"
+#include "tests/support/structures.h"
+
+namespace kerf::test {
+namespace {
+
+/// Triangles, spheres and parallelograms, some of them large.
+struct MixedThings {
+  RandomTriangles triangles;
+  std::vector<Sphere> spheres;
+  std::vector<Parallelogram> parallelograms;
+
+  explicit MixedThings(uint32_t count, uint32_t seed = 1) : triangles(count, seed) {
+    Random random(seed);
+    for (uint32_t i = 0; i < count / 8; ++i) {
+      spheres.push_back({10.0F * random.vector(), i % 16 == 0 ? 2.0F : 0.2F});
+      parallelograms.push_back(
+          {10.0F * random.vector(), random.vector(), (i % 16 == 0 ? 5.0F : 0.5F) * random.vector()});
+    }
+  }
+  void add_to(Scene& scene) const {
+    scene.add(triangles.geometry());
+    scene.add(Strided<Sphere>(spheres.data(), spheres.size()));
+    scene.add(Strided<Parallelogram>(parallelograms.data(), parallelograms.size()));
+  }
+};
+
+/// From everywhere to everywhere, some along the axes, some within limits.
+std::vector<Ray> mixed_rays(size_t count, uint32_t seed = 7) {
+  Random random(seed);
+  std::vector<Ray> rays;
+  for (size_t i = 0; i < count; ++i) {
+    Ray ray{.origin = 15.0F * random.vector(), .direction = random.vector()};
+    if (i % 5 == 0) ray.direction[static_cast<uint32_t>(i / 5 % 3)] = 0;
+    if (i % 10 == 0) ray.direction[static_cast<uint32_t>((i / 10 + 1) % 3)] = 0;
+    if (i % 7 == 0) ray.t_max = 10;
+    if (i % 11 == 0) ray.t_min = 5;
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+class EveryStructure : public testing::TestWithParam<std::string> {};
+
+INSTANTIATE_TEST_SUITE_P(Menu, EveryStructure, testing::ValuesIn(traceable_pipelines()),
+                         [](const auto& entry) { return test_name(entry.param); });
+
+TEST_P(EveryStructure, EmptySceneHitsNothing) {
+  Scene scene;
+  scene.build({.structure = GetParam()});
+  EXPECT_FALSE(scene.closest_hit({.origin = {0, 0, 0}, .direction = {0, 0, 1}}));
+  EXPECT_FALSE(scene.any_hit({.origin = {0, 0, 0}, .direction = {0, 0, 1}}));
+  EXPECT_EQ(scene.structure().find_fault(), std::nullopt);
+  EXPECT_EQ(find_outer_fault(scene), std::nullopt);
+  EXPECT_EQ(scene.report().references, 0U);
+  EXPECT_EQ(scene.report().sah_cost, 0);
+}
+
+TEST_P(EveryStructure, KeepsItsInvariantsAndCoversEveryPrimitive) {
+  for (const uint32_t count : {1U, 2U, 7U, 2000U}) {
+    const MixedThings things(count);
+    Scene scene;
+    things.add_to(scene);
+    scene.build({.structure = GetParam()});
+    EXPECT_EQ(scene.structure().find_fault(), std::nullopt) << count;
+    EXPECT_EQ(find_outer_fault(scene), std::nullopt) << count;
+    EXPECT_GE(scene.report().references_per_primitive, 1);
+    EXPECT_GT(scene.report().bytes, 0U);
+    EXPECT_TRUE(std::isfinite(scene.report().sah_cost));
+    EXPECT_GT(scene.report().sah_cost, 0);
+  }
+}
+
+TEST_P(EveryStructure, FindsTheHitsOfBruteForceBitForBit) {
+  const MixedThings things(2000);
+  Scene brute, scene;
+  things.add_to(brute);
+  things.add_to(scene);
+  brute.build({.structure = "brute_force"});
+  scene.build({.structure = GetParam()});
+  const std::vector<Ray> rays = mixed_rays(4000);
+  std::vector<Hit> batch(rays.size()), counted(rays.size());
+  scene.closest_hit(rays, batch);
+  TraceCounts batch_counts;
+  scene.closest_hit(rays, counted, batch_counts);
+  size_t hits = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const Hit expected = brute.closest_hit(rays[i]);
+    hits += expected ? 1 : 0;
+    TraceCounts counts;
+    ASSERT_EQ(scene.closest_hit(rays[i]), expected) << i;
+    ASSERT_EQ(scene.closest_hit(rays[i], counts), expected) << i;
+    ASSERT_EQ(scene.any_hit(rays[i]), static_cast<bool>(expected)) << i;
+    ASSERT_EQ(scene.any_hit(rays[i], counts), static_cast<bool>(expected)) << i;
+    ASSERT_EQ(batch[i], expected) << i;
+    ASSERT_EQ(counted[i], expected) << i;
+    EXPECT_TRUE(!expected || counts.primitives > 0) << i;
+  }
+  EXPECT_GT(hits, rays.size() / 10);
+  EXPECT_GT(batch_counts.primitives, 0U);
+}
+
+TEST_P(EveryStructure, IsTheSameForAnyNumberOfThreads) {
+  const MixedThings things(20000);
+  Scene scene;
+  things.add_to(scene);
+  const BuildReport one = scene.build({.structure = GetParam(), .threads = 1});
+  for (const int threads : {2, 7}) {
+    const BuildReport more = scene.build({.structure = GetParam(), .threads = threads});
+    EXPECT_EQ(more.tree_hash, one.tree_hash) << threads;
+    EXPECT_EQ(more.bytes, one.bytes);
+    EXPECT_EQ(more.sah_cost, one.sah_cost);
+  }
+}
+
+TEST_P(EveryStructure, CoincidentTrianglesAreBounded) {
+  // The limit that nothing but testing them all can pass: 1e5 times the same triangle, the first of them is hit.
+  const std::vector<Vec3f> vertices = {{0, 0, 1}, {1, 0.25F, 1.5F}, {0.25F, 1, 2}};
+  const std::vector<TriangleCorners> triangles(100000, {0, 1, 2});
+  Scene scene;
+  scene.add(TriangleMesh{std::span(vertices), std::span(triangles)});
+  const BuildReport& report = scene.build({.structure = GetParam()});
+  EXPECT_LE(report.references_per_primitive, 64);
+  EXPECT_LE(report.bytes, 100000U * 2048);
+  const Hit hit = scene.closest_hit({.origin = {0.4F, 0.4F, 0}, .direction = {0, 0, 1}});
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit.primitive, 0U);
+}
+
+TEST_P(EveryStructure, GivesUpAtItsLimit) {
+  const MixedThings things(20000);
+  Scene scene;
+  things.add_to(scene);
+  scene.build({.structure = GetParam()});
+  const Hit before = scene.closest_hit(mixed_rays(1)[0]);
+  std::atomic<bool> cancelled = true;
+  WorkLimit limit;
+  limit.cancelled = &cancelled;
+  try {
+    scene.build({.structure = GetParam(), .limit = limit});
+    ADD_FAILURE() << "it was not stopped";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::stopped) << error.what();
+  }
+  EXPECT_EQ(scene.closest_hit(mixed_rays(1)[0]), before);
+}
+
+}  // namespace
+}  // namespace kerf::test
