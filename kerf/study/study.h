@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -69,7 +70,8 @@ struct StudyOptions {
   size_t limit_bytes = static_cast<size_t>(-1);                    ///< of one build, as far as it tells before
   bool skip_invalid = false;
   bool with_overlap = true;
-  std::span<const StudyRays> loaded;  ///< traced instead of rays from the camera
+  const std::atomic<bool>* cancelled = nullptr;  ///< becomes true when no more is wanted, for what takes long
+  std::span<const StudyRays> loaded;             ///< traced instead of rays from the camera
   /// Called now and then with the share that is done and what is being done; returns false to stop.
   std::function<bool(double, std::string_view)> progress;
 };
