@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -14,6 +15,7 @@ inline constexpr int kDone = 0, kBadInput = 1, kUsage = 2, kInterrupted = 130;
 void add_render(CLI::App& app, std::function<int()>& run);
 void add_check(CLI::App& app, std::function<int()>& run);
 void add_list(CLI::App& app, std::function<int()>& run);
+void add_study(CLI::App& app, std::function<int()>& run);
 void add_make(CLI::App& app, std::function<int()>& run);
 void add_convert(CLI::App& app, std::function<int()>& run);
 
@@ -32,5 +34,7 @@ void watch_interrupts();
 /// From now on interrupts are passed over: files are written to their end.
 void ignore_interrupts();
 bool interrupted();
+/// The same for what looks at it by itself.
+const std::atomic<bool>* interrupt_flag();
 
 }  // namespace kerf::app

@@ -21,11 +21,11 @@
 namespace kerf::app {
 namespace {
 
-volatile std::sig_atomic_t interrupt_seen = 0;
+std::atomic<bool> interrupt_seen = false;
+static_assert(std::atomic<bool>::is_always_lock_free);  // so that a signal handler may set it
 
 void on_interrupt(int signal) {
-  if (interrupt_seen != 0) std::_Exit(128 + signal);
-  interrupt_seen = 1;
+  if (interrupt_seen.exchange(true)) std::_Exit(128 + signal);
 }
 
 /// "; did you mean ...?" for a word that no option or subcommand of the app has, else nothing.
@@ -70,6 +70,7 @@ int run(int argc, char** argv) {
   add_render(app, command);
   add_check(app, command);
   add_list(app, command);
+  add_study(app, command);
   add_make(app, command);
   add_convert(app, command);
   app.require_subcommand(0, 1);
@@ -128,7 +129,8 @@ void ignore_interrupts() {
   std::signal(SIGTERM, SIG_IGN);
 }
 
-bool interrupted() { return interrupt_seen != 0; }
+bool interrupted() { return interrupt_seen; }
+const std::atomic<bool>* interrupt_flag() { return &interrupt_seen; }
 
 }  // namespace kerf::app
 
