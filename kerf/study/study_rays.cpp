@@ -95,7 +95,7 @@ std::vector<StudyRays> make_study_rays(const SceneDescription& scene, const Came
   }
   const RenderScene start = starting_scene(scene, camera, with_light, skip_invalid);
   const Lights lights(start);
-  const Vec3d diagonal = to_double(start.scene().bounds().extent());
+  const Vec3d diagonal = to_double(bounds_of(scene).extent());  // without the lights that were added
   const auto reach = static_cast<float>(kOcclusionReach * std::sqrt(dot(diagonal, diagonal)));
   std::vector<Place> places;
   if (std::any_of(kinds.begin(), kinds.end(), [](RayKind kind) { return kind != RayKind::primary; })) {
