@@ -16,6 +16,7 @@
 #include "kerf/base/nearest_word.h"
 #include "kerf/scene/pipeline.h"
 #include "kerf/study/camera_list.h"
+#include "kerf/study/models/models.h"
 #include "kerf/study/paper.h"
 #include "kerf/study/tables.h"
 #include "kerf/study/turn.h"
@@ -28,10 +29,11 @@ constexpr const char* kDefaultRows =
 
 struct Arguments : SceneArguments {
   std::vector<std::string> inputs;
-  std::string rows, rays = "primary", size = "1000x1000", turn = "straight", sweep;
+  std::string rows, rays = "primary", size = "1000x1000", turn = "straight", sweep, growth;
   std::string save_rays, load_rays, csv, html;
   bool is_paper = false, no_overlap = false;
   int repeat = 5, seeds = 1;
+  double up_to = 1e6;
   double limit_seconds = std::numeric_limits<double>::infinity(), limit_gigabytes = 8;
 };
 
@@ -63,27 +65,50 @@ std::vector<RayKind> parse_kinds(const std::string& text) {
   return kinds;
 }
 
+/// Pipelines by name; "all" stands for everything in the menu.
+std::vector<std::string> rows_of(const std::string& text) {
+  if (text.empty()) return {};
+  std::vector<std::string> rows;
+  for (const std::string& row : split_pipeline_list(text)) {
+    if (row == "all") {
+      for (const std::string& one : all_rows()) rows.push_back(one);
+    } else {
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
+std::vector<PaperStudyRow> plain_rows(const std::vector<std::string>& pipelines) {
+  std::vector<PaperStudyRow> rows;
+  for (const std::string& row : pipelines) rows.push_back({row, {}});
+  return rows;
+}
+
 /// Mistakes in the words are found before any work is done.
 void check_words(const Arguments& a) {
   const auto refuse = [](const char* option, const std::string& sentence) {
     throw Error(ErrorCode::invalid_option, option, sentence);
   };
-  if (a.is_paper && !a.inputs.empty()) refuse("--paper", "it has scenes of its own: give no input");
-  if (!a.is_paper && a.inputs.empty()) refuse("input", "give a scene or a model, or --paper");
+  const bool has_own_scenes = a.is_paper || !a.growth.empty();
+  if (has_own_scenes && !a.inputs.empty()) {
+    refuse(a.is_paper ? "--paper" : "--growth", "it has scenes of its own: give no input");
+  }
+  if (!has_own_scenes && a.inputs.empty()) refuse("input", "give a scene or a model, --paper or --growth");
+  if (a.is_paper && !a.growth.empty()) refuse("--growth", "it does not go with --paper");
+  if (!a.growth.empty()) check_model_name(a.growth);
   if (!a.sweep.empty() && a.sweep != "sa_max") {
     const std::string_view names[] = {"sa_max"};
     refuse("--sweep", fmt::format("unknown option '{}'{}", a.sweep, suggestion(a.sweep, names)));
   }
-  if (!a.sweep.empty() && (a.is_paper || !a.rows.empty())) refuse("--sweep", "it makes the rows: give no others");
+  if (!a.sweep.empty() && (has_own_scenes || !a.rows.empty())) refuse("--sweep", "it makes the rows: give no others");
   if (!(a.save_rays.empty() && a.load_rays.empty()) && a.inputs.size() != 1) {
     refuse(a.save_rays.empty() ? "--load-rays" : "--save-rays", "rays belong to one scene: give one input");
   }
   turn_by_name(a.turn);
   parse_kinds(a.rays);
   parse_size(a.size);
-  if (!a.rows.empty()) {
-    for (const std::string& row : split_pipeline_list(a.rows)) parse_pipeline(row);
-  }
+  for (const std::string& row : rows_of(a.rows)) parse_pipeline(row);
   for (const std::string* path : {&a.json, &a.csv, &a.html, &a.save_rays}) {
     if (!path->empty() && *path != "-") check_output(*path);
   }
@@ -182,9 +207,7 @@ void study_paper(const Arguments& a, Session& session) {
     if (interrupted()) break;
     StudyScene scene = stand_in.load();
     std::vector<PaperStudyRow> rows = paper_rows(scene.description, *stand_in.paper);
-    if (!a.rows.empty()) {
-      for (const std::string& row : split_pipeline_list(a.rows)) rows.push_back({row, {}});
-    }
+    for (const PaperStudyRow& row : plain_rows(rows_of(a.rows))) rows.push_back(row);
     session.add(std::move(scene), rows);
   }
 }
@@ -194,12 +217,21 @@ void study_inputs(const Arguments& a, Session& session) {
   for (const std::string& input : a.inputs) {
     if (interrupted()) break;
     StudyScene scene = read_scene_for(a, input, session.aspect());
-    std::vector<PaperStudyRow> rows;
-    for (const std::string& row : !a.sweep.empty() ? sweep_rows(scene.description)
-                                                   : split_pipeline_list(a.rows.empty() ? kDefaultRows : a.rows)) {
-      rows.push_back({row, {}});
-    }
-    session.add(std::move(scene), rows);
+    const std::vector<std::string> rows =
+        !a.sweep.empty() ? sweep_rows(scene.description) : rows_of(a.rows.empty() ? kDefaultRows : a.rows);
+    session.add(std::move(scene), plain_rows(rows));
+  }
+}
+
+/// One family of models, each ten times as large as the one before.
+void study_growth(const Arguments& a, Session& session) {
+  std::vector<uint64_t> sizes;
+  for (double size = 1000; size <= a.up_to * 1.0001; size *= 10) sizes.push_back(static_cast<uint64_t>(size));
+  session.expect(sizes.size());
+  for (const uint64_t size : sizes) {
+    if (interrupted()) break;
+    session.add(made_scene(fmt::format("{} {}", a.growth, size), a.growth, size, 1),
+                plain_rows(rows_of(a.rows.empty() ? "all" : a.rows)));
   }
 }
 
@@ -214,7 +246,7 @@ void write(const Arguments& a, Session& session, const std::string& command_line
     report.command = command_line;
     report.machine = machine_line();
     report.notes = session.notes;
-    (a.sweep.empty() ? report.results : report.sweep) = results;
+    (!a.sweep.empty() ? report.sweep : !a.growth.empty() ? report.growth : report.results) = results;
     write_text(a.html, html_report(report));
   }
   const bool is_taken = a.json == "-" || a.csv == "-" || a.html == "-";
@@ -227,7 +259,13 @@ int run_study(const Arguments& a, const std::string& command_line) {
   check_words(a);
   watch_interrupts();
   Session session(a);
-  a.is_paper ? study_paper(a, session) : study_inputs(a, session);
+  if (a.is_paper) {
+    study_paper(a, session);
+  } else if (!a.growth.empty()) {
+    study_growth(a, session);
+  } else {
+    study_inputs(a, session);
+  }
   const bool is_complete = !interrupted();
   write(a, session, command_line);
   return is_complete ? kDone : kInterrupted;
@@ -238,7 +276,7 @@ void add_options(CLI::App& command, Arguments& a) {
                      "YAML scenes or models; a model is seen from its row in a cameras.tsv beside it");
   command.add_option(
       "--rows", a.rows,
-      fmt::format("Pipelines to compare, separated by commas; see kerf list (default: {})", kDefaultRows));
+      fmt::format("Pipelines to compare, separated by commas, or all; see kerf list (default: {})", kDefaultRows));
   command.add_option("--rays", a.rays, "Kinds of rays: primary, shadow, ambient_occlusion, diffuse")
       ->capture_default_str();
   command.add_option("--size", a.size, "Width and height of the picture whose rays are traced")->capture_default_str();
@@ -249,6 +287,10 @@ void add_options(CLI::App& command, Arguments& a) {
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   command.add_option("--sweep", a.sweep, "sa_max: a row for each of a dozen surface area limits");
+  command.add_option("--growth", a.growth, "A model of kerf make, from 1000 triangles on, ten times as many each time");
+  command.add_option("--up-to", a.up_to, "With --growth: triangles of the largest")
+      ->check(CLI::Range(1e3, 1e8))
+      ->capture_default_str();
   command.add_option("--save-rays", a.save_rays, "Write the rays to this file, a NumPy array");
   command.add_option("--load-rays", a.load_rays, "Trace the rays of this file, such as a NumPy array of shape (n, 6)");
   command.add_option("--threads", a.threads, "Threads that build; 0: all. Rays are always traced on one")
@@ -290,6 +332,7 @@ void add_study(CLI::App& app, std::function<int()>& run) {
     for (const std::string& input : a->inputs) line += " " + input;
     if (a->is_paper) line += " --paper";
     if (!a->rows.empty()) line += " --rows '" + a->rows + "'";
+    if (!a->growth.empty()) line += fmt::format(" --growth {} --up-to {:g}", a->growth, a->up_to);
     if (!a->sweep.empty()) line += " --sweep " + a->sweep;
     line += " --rays " + a->rays + " --size " + a->size;
     if (a->turn != "straight") line += " --turn " + a->turn;

@@ -57,10 +57,7 @@ SceneDescription bare(Mesh mesh, const std::string& place) {
 }
 
 PaperStandIn made(const std::string& name, const PaperTableScene& paper, const char* model, int seed) {
-  return {name, &paper, [=, &paper] {
-            MadeModel made = make_model(model, paper.triangles, static_cast<uint64_t>(seed));
-            return StudyScene{name, bare(std::move(made.mesh), model), made.camera};
-          }};
+  return {name, &paper, [=, &paper] { return made_scene(name, model, paper.triangles, static_cast<uint64_t>(seed)); }};
 }
 
 /// The stand-in from a file, if a folder has it.
@@ -86,6 +83,11 @@ bool is_in_menu(std::string_view name) {
 }
 
 }  // namespace
+
+StudyScene made_scene(const std::string& name, const std::string& model, uint64_t triangles, uint64_t seed) {
+  MadeModel made = make_model(model, triangles, seed);
+  return {name, bare(std::move(made.mesh), model), made.camera};
+}
 
 std::span<const PaperTableScene> paper_table() { return kTable; }
 

@@ -26,6 +26,9 @@ struct PaperTableScene {
 /// The whole table.
 std::span<const PaperTableScene> paper_table();
 
+/// A model of kerf make as a scene of a study.
+StudyScene made_scene(const std::string& name, const std::string& model, uint64_t triangles, uint64_t seed);
+
 /// A scene to hold against one of the paper's.
 struct PaperStandIn {
   std::string name;

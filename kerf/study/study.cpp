@@ -7,6 +7,7 @@
 
 #include "kerf/base/error.h"
 #include "kerf/render/render_scene.h"
+#include "kerf/scene/menu.h"
 #include "kerf/scene/pipeline.h"
 #include "kerf/study/end_point_overlap.h"
 
@@ -263,6 +264,20 @@ class Study {
 };
 
 }  // namespace
+
+std::vector<std::string> all_rows() {
+  std::vector<std::string> rows;
+  for (const MenuEntry& entry : menu()) {
+    const std::string name(entry.name);
+    if (name == "brute_force" || name == "bvh2") continue;  // bvh2 is what a builder alone means
+    if (entry.kind == "splitter") {
+      rows.push_back(name + "(budget=1.5)+binned_sah");
+    } else {
+      rows.push_back(entry.kind == "layout" ? "binned_sah+" + name : name);
+    }
+  }
+  return rows;
+}
 
 std::vector<StudyResult> study(const StudyScene& scene, const StudyOptions& options) {
   return Study(scene, options).run();
