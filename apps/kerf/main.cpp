@@ -16,6 +16,7 @@
 #include "kerf/base/parallel.h"
 #include "kerf/base/version.h"
 #include "kerf/io/output_file.h"
+#include "kerf/study/embree_builder.h"
 #include "kerf/trace/triangle_filter.h"
 
 namespace kerf::app {
@@ -66,6 +67,7 @@ int run(int argc, char** argv) {
                                                 triangle_kernels().instruction_set));
   app.allow_extras();  // to name the nearest word, which CLI11 does not
   app.footer("Example: kerf render room.yaml -o room.png --spp 256");
+  add_embree_builders();
   std::function<int()> command;
   add_render(app, command);
   add_check(app, command);

@@ -18,12 +18,16 @@ struct GrowingNode {
   bool is_leaf() const { return count == 1; }
 };
 
-/// A binary tree that takes one reference after another (Goldsmith and Salmon 1987). From the root down, always into
-/// the child whose box grows least; of the places on that way, the reference goes where it adds least to the surface
-/// area of inner nodes: the growth of those above, inherited, and the new one around the node found and itself.
+/// A binary tree that takes one reference after another, each where it adds least to the surface area of inner nodes:
+/// the growth of those above, inherited, and the new one around the node found and itself. Looked at are the nodes on
+/// the way down, always into the child whose box grows least (Goldsmith and Salmon 1987), or after those any that may
+/// be better, those with the least inherited growth first (Bittner, Hapala, Havran: Incremental BVH Construction for
+/// Ray Tracing, 2015).
 class GrowingTree {
  public:
-  GrowingTree(std::span<const Reference> references, std::span<const uint32_t> order, const WorkLimit& limit) {
+  GrowingTree(std::span<const Reference> references, std::span<const uint32_t> order, bool search_all,
+              const WorkLimit& limit)
+      : search_all_(search_all) {
     nodes_.reserve(2 * references.size());
     for (size_t i = 0; i < order.size(); ++i) {
       if (i % kCheckEvery == 0) limit.check();
@@ -34,41 +38,50 @@ class GrowingTree {
   std::span<const GrowingNode> nodes() const { return nodes_; }
 
  private:
-  static constexpr size_t kCheckEvery = 4096;
-  static constexpr uint32_t kLongestWay = 256;  // nodes looked at for one reference, at most: the work is bounded
+  static constexpr size_t kCheckEvery = 1024;
+  static constexpr size_t kLongestWay = 256;      // nodes on the way down, at most: the work is bounded
+  static constexpr size_t kLongestSearch = 2048;  // nodes looked at beside the way, at most
+
+  /// A node looked at.
+  struct Visit {
+    uint32_t node = 0;
+    uint32_t above = 0;    ///< the visit of its parent; the root's is its own
+    double inherited = 0;  ///< growth of the nodes above
+  };
 
   void insert(uint32_t reference, const Box3f& box) {
     if (nodes_.empty()) return nodes_.push_back({box, reference, 1});
-    std::array<uint32_t, kLongestWay> way;
-    const uint32_t last = find_place(box, way);
-    for (uint32_t i = 0; i <= last; ++i) {
-      GrowingNode& node = nodes_[way[i]];
-      if (i == last) break;
-      node.bounds.extend(box);
-      ++node.count;
+    visits_.clear();
+    visits_.push_back({});
+    double least = std::numeric_limits<double>::infinity();
+    uint32_t best = walk_down(box, least);
+    if (search_all_) best = search(box, best, least);
+    for (uint32_t i = best; i != visits_[i].above;) {
+      i = visits_[i].above;
+      nodes_[visits_[i].node].bounds.extend(box);
+      ++nodes_[visits_[i].node].count;
     }
-    const GrowingNode old = nodes_[way[last]];
+    const uint32_t place = visits_[best].node;
+    const GrowingNode old = nodes_[place];
     const auto pair = static_cast<uint32_t>(nodes_.size());
     nodes_.push_back(old);
     nodes_.push_back({box, reference, 1});
-    nodes_[way[last]] = {united(old.bounds, box), pair, old.count + 1};
+    nodes_[place] = {united(old.bounds, box), pair, old.count + 1};
   }
 
-  /// The way down, and which of its nodes gets the reference as a sibling; of equally good ones the deepest.
-  uint32_t find_place(const Box3f& box, std::array<uint32_t, kLongestWay>& way) const {
-    double inherited = 0, least = std::numeric_limits<double>::infinity();
-    uint32_t best = 0, at = 0;
+  /// The visit of the best place on the way into the children that grow least; of equally good ones the deepest.
+  uint32_t walk_down(const Box3f& box, double& least) {
+    uint32_t best = 0;
     for (uint32_t i = 0; i < kLongestWay; ++i) {
-      way[i] = at;
-      const GrowingNode& node = nodes_[at];
+      const GrowingNode& node = nodes_[visits_[i].node];
       const double area = half_area(united(node.bounds, box));
-      if (inherited + area <= least) {
-        least = inherited + area;
+      if (visits_[i].inherited + area <= least) {
+        least = visits_[i].inherited + area;
         best = i;
       }
-      inherited += area - half_area(node.bounds);
+      const double inherited = visits_[i].inherited + area - half_area(node.bounds);
       if (node.is_leaf() || inherited > least) break;
-      at = least_growth(node.first, box);
+      visits_.push_back({least_growth(node.first, box), i, inherited});
     }
     return best;
   }
@@ -85,7 +98,42 @@ class GrowingTree {
     return a.count <= b.count ? pair : pair + 1;
   }
 
+  /// The visit of a place better than `least`, else `best`. Branch and bound: nothing below a node can be had for less
+  /// than what it inherits and the area of the box itself.
+  uint32_t search(const Box3f& box, uint32_t best, double least) {
+    const double own = half_area(box);
+    const auto later = [&](uint32_t a, uint32_t b) {
+      return visits_[a].inherited != visits_[b].inherited ? visits_[a].inherited > visits_[b].inherited : a > b;
+    };
+    visits_.push_back({});
+    std::vector<uint32_t> queue{static_cast<uint32_t>(visits_.size() - 1)};
+    visits_.back().above = queue[0];
+    for (size_t looked_at = 0; !queue.empty() && looked_at < kLongestSearch; ++looked_at) {
+      std::pop_heap(queue.begin(), queue.end(), later);
+      const uint32_t i = queue.back();
+      queue.pop_back();
+      const Visit visit = visits_[i];
+      if (visit.inherited + own >= least) break;
+      const GrowingNode& node = nodes_[visit.node];
+      const double area = half_area(united(node.bounds, box));
+      if (visit.inherited + area < least) {
+        least = visit.inherited + area;
+        best = i;
+      }
+      const double inherited = visit.inherited + area - half_area(node.bounds);
+      if (node.is_leaf() || inherited + own >= least) continue;
+      for (uint32_t child = node.first; child < node.first + 2; ++child) {
+        queue.push_back(static_cast<uint32_t>(visits_.size()));
+        visits_.push_back({child, i, inherited});
+        std::push_heap(queue.begin(), queue.end(), later);
+      }
+    }
+    return best;
+  }
+
+  bool search_all_;
   std::vector<GrowingNode> nodes_;
+  std::vector<Visit> visits_;
 };
 
 /// Cuts where a tree did: its references, in the order of its leaves, are one stretch for each node. Leaves and the
@@ -185,7 +233,7 @@ Bvh build_insertion(BuildInput input, const OptionValues& options) {
       insertion_order(input.references.size(), options.is_on("order"), static_cast<uint64_t>(options["seed"]));
   input.limit.check(input.references.size() * (2 * sizeof(GrowingNode) + sizeof(Reference)));
   const auto grown = [&] {
-    const GrowingTree tree(input.references, order, input.limit);
+    const GrowingTree tree(input.references, order, options.is_on("search"), input.limit);
     return GrownOrder(input.references, tree.nodes());
   };
   GrownOrder partition = grown();

@@ -7,11 +7,18 @@ namespace kerf {
 // The makers of kerf/scene/structures, a file each, and their rows for the tables in structure.cpp.
 
 std::unique_ptr<const Structure> make_bvh2_structure(Bvh bvh, const StructureInput& input, const OptionValues& options);
+inline constexpr std::string_view kBvh2Orders[] = {"entry", "fixed", "axis", "heap"};
+inline constexpr std::string_view kBvh2BoxTests[] = {"ours", "naive", "williams", "pluecker"};
+inline constexpr OptionSpec kBvh2Options[] = {
+    {"order", "which child first: by entry distance, as stored, by axis and sign, of all that wait the nearest", 0,
+     kBvh2Orders},
+    {"box", "the box test: Kerf's, or one of the literature, to compare", 0, kBvh2BoxTests},
+};
 inline constexpr LayoutEntry kBvh2Layout = {
     "bvh2",
     "a binary tree, the boxes of both children beside each other, one ray at a time; what a builder alone means",
     "",
-    {},
+    kBvh2Options,
     0,
     make_bvh2_structure};
 
