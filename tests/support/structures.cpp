@@ -12,6 +12,19 @@ std::string splitter_text(std::string_view name) {
   return name == "early_split" ? "early_split(budget=2)" : std::string(name);
 }
 
+/// An entry once for each word of each of its options but the default, which the bare name stands for.
+std::vector<std::string> variants(const MenuEntry& entry) {
+  std::vector<std::string> all;
+  for (const OptionSpec& option : entry.options) {
+    for (size_t word = 0; word < option.words.size(); ++word) {
+      if (static_cast<double>(word) == option.fallback) continue;
+      all.push_back(std::string(entry.name) + "(" + std::string(option.name) + "=" + std::string(option.words[word]) +
+                    ")");
+    }
+  }
+  return all;
+}
+
 std::vector<std::string> pipelines(bool with_all_split) {
   std::vector<std::string> all;
   const std::string early = "early_split(budget=2)+";
@@ -20,6 +33,10 @@ std::vector<std::string> pipelines(bool with_all_split) {
     if (entry.kind == "splitter") all.push_back(splitter_text(name) + "+binned_sah");
     if (entry.kind == "builder" || entry.kind == "structure") all.push_back(name);
     if (entry.kind == "layout") all.push_back("binned_sah+" + name);
+    for (const std::string& variant : variants(entry)) {
+      if (entry.kind == "builder" || entry.kind == "structure") all.push_back(variant);
+      if (entry.kind == "layout") all.push_back("binned_sah+" + variant);
+    }
     const auto* structure = std::get_if<const StructureEntry*>(&entry.entry);
     if (structure != nullptr && (*structure)->takes_pieces) all.push_back(early + name);
     if (with_all_split && entry.kind == "builder") all.push_back(early + name);
