@@ -1,6 +1,7 @@
 #include "kerf/references/splitters.h"
 
 #include "kerf/base/error.h"
+#include "kerf/references/early_split.h"
 
 namespace kerf {
 namespace {
@@ -16,12 +17,12 @@ constexpr OptionSpec kEarlySplitOptions[] = {
     {"budget", "instead of sa_max: as finely as this many references per primitive allow", 1.5, 1, kMostPerPrimitive},
 };
 
-EarlySplitResult split_early(const SplitInput& input, const OptionValues& values) {
+SplitResult split_early(const SplitInput& input, const OptionValues& values) {
   if (values.is_set("budget")) {
     if (values.is_set("sa_max") || values.is_set("cap")) {
       throw Error(ErrorCode::invalid_option, "early_split", "budget replaces sa_max and cap: give one or the other");
     }
-    EarlySplitResult result = early_split(input.whole, input.clipper, EarlySplit::with_budget(values["budget"]));
+    SplitResult result = early_split(input.whole, input.clipper, EarlySplit::with_budget(values["budget"]));
     result.capped = false;  // no limit was asked for
     return result;
   }

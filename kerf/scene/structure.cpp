@@ -32,7 +32,7 @@ StructureStatistics measure(const Structure& structure) {
 
 namespace {
 
-constexpr LayoutEntry kLayouts[] = {kBvh2Layout};
+constexpr LayoutEntry kLayouts[] = {kBvh2Layout, kLateSplitLayout};
 constexpr StructureEntry kStructures[] = {kBruteForceStructure};
 
 }  // namespace
