@@ -9,7 +9,7 @@ namespace {
 
 /// An entry with options that make it split what tests have; whatever splits needs a row.
 std::string splitting_text(std::string_view name) {
-  if (name == "early_split" || name == "late_split") return std::string(name) + "(budget=2)";
+  if (name == "early_split" || name == "late_split" || name == "refine") return std::string(name) + "(budget=2)";
   return std::string(name);
 }
 
