@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kerf/build/bsp_sah.h"
 #include "kerf/scene/structure.h"
 
 namespace kerf {
@@ -35,5 +36,14 @@ inline constexpr LayoutEntry kLateSplitLayout = {
 std::unique_ptr<const Structure> build_brute_force(StructureInput input, const OptionValues& options);
 inline constexpr StructureEntry kBruteForceStructure = {
     "brute_force", "tests every primitive, without a tree", "", {}, false, build_brute_force};
+
+std::unique_ptr<const Structure> build_bsp_structure(StructureInput input, const OptionValues& options);
+inline constexpr StructureEntry kBspStructure = {
+    "bsp_sah",
+    "a space partition by planes of faces and across axes, the cheapest by the surface areas of its convex cells",
+    "Ize, Wald, Parker: Ray Tracing with the BSP Tree, 2008",
+    BspOptions::kSpecs,
+    false,
+    build_bsp_structure};
 
 }  // namespace kerf
