@@ -113,11 +113,11 @@ StructureInput Scene::Built::make_input(const Pipeline& pipeline, const BuildOpt
   input.limit.check();
   if (const auto* splitter = std::get_if<const SplitterEntry*>(&pipeline.stages.front().entry->entry)) {
     const size_t kept = input.references.size();
-    EarlySplitResult split = (*splitter)->split({all, input.references, geometry_clipper(all), options.limit},
+    SplitResult split = (*splitter)->split({all, input.references, geometry_clipper(all), options.limit},
                                                 pipeline.stages.front().options);
     input.references = std::move(split.references);
     input.is_split = input.references.size() > kept;
-    report.sa_max = split.sa_max;
+    report.sa_max = split.limit;
     report.capped = split.capped;
   }
   report.seconds.split = watch.lap();

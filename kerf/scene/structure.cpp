@@ -32,8 +32,8 @@ StructureStatistics measure(const Structure& structure) {
 
 namespace {
 
-constexpr LayoutEntry kLayouts[] = {kBvh2Layout, kSkipPointerLayout, kPacketsLayout};
-constexpr StructureEntry kStructures[] = {kBruteForceStructure};
+constexpr LayoutEntry kLayouts[] = {kBvh2Layout, kSkipPointerLayout, kPacketsLayout, kLateSplitLayout};
+constexpr StructureEntry kStructures[] = {kBspStructure, kBruteForceStructure};
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kerf/build/bsp_sah.h"
 #include "kerf/scene/structure.h"
 
 namespace kerf {
@@ -43,9 +44,34 @@ inline constexpr LayoutEntry kPacketsLayout = {
     kPacketOptions,
     0,
     make_packets_structure};
+std::unique_ptr<const Structure> make_late_split_structure(Bvh bvh, const StructureInput& input,
+                                                           const OptionValues& options);
+inline constexpr OptionSpec kLateSplitOptions[] = {
+    {"sa_max", "surface area above which a leaf is cut, all six faces, squared scene units", Box3f::kInfinity, 0,
+     Box3f::kInfinity, false, true},
+    {"cap", "pieces per leaf of the builder's tree, on average, that are never passed", 16, 1, 1000},
+    {"budget", "instead of sa_max: as finely as this many pieces per leaf allow", 1.5, 1, 1000},
+    {"restore", "whether the rest of a cut leaf is left out once its primitive was tested", 1, kOffOn},
+};
+inline constexpr LayoutEntry kLateSplitLayout = {
+    "late_split",
+    "cuts the leaves of a finished tree, one primitive each, into trees of tight boxes",
+    "Ernst, Greiner: Early Split Clipping for Bounding Volume Hierarchies, 2007, section 5.1",
+    kLateSplitOptions,
+    1,
+    make_late_split_structure};
 
 std::unique_ptr<const Structure> build_brute_force(StructureInput input, const OptionValues& options);
 inline constexpr StructureEntry kBruteForceStructure = {
     "brute_force", "tests every primitive, without a tree", "", {}, false, build_brute_force};
+
+std::unique_ptr<const Structure> build_bsp_structure(StructureInput input, const OptionValues& options);
+inline constexpr StructureEntry kBspStructure = {
+    "bsp_sah",
+    "a space partition by planes of faces and across axes, the cheapest by the surface areas of its convex cells",
+    "Ize, Wald, Parker: Ray Tracing with the BSP Tree, 2008",
+    BspOptions::kSpecs,
+    false,
+    build_bsp_structure};
 
 }  // namespace kerf
