@@ -45,13 +45,7 @@ class GridWalk {
       const uint32_t a = axes_[xy].next_entry <= axes_[2].next_entry ? xy : 2;
       const float t = axes_[a].next_entry;
       if (!(t <= limit && t <= exit_ && t < kInfinity)) return true;
-      const uint32_t b = a == 2 ? 0 : a + 1, c = b == 2 ? 0 : b + 1;
-      axes_[a].enter_next();
-      axes_[b].leave_before(t);
-      axes_[c].leave_before(t);
-      const uint32_t k = axes_[a].last;
-      if (!visit_range(k, k, axes_[b].first, axes_[b].last, axes_[c].first, axes_[c].last, a, b, c, visit))
-        return false;
+      if (!(a == 0 ? step<0>(t, visit) : a == 1 ? step<1>(t, visit) : step<2>(t, visit))) return false;
     }
   }
 
@@ -111,6 +105,21 @@ class GridWalk {
       while (first_exit < t && first < last) first_exit = exit(++first);
     }
   };
+
+  /// Enters the next slab along axis a, at t.
+  template <uint32_t a, class Visit>
+  bool step(float t, Visit&& visit) {
+    constexpr uint32_t b = (a + 1) % 3, c = (a + 2) % 3;
+    axes_[a].enter_next();
+    axes_[b].leave_before(t);
+    axes_[c].leave_before(t);
+    const uint32_t k = axes_[a].last;
+    if (axes_[b].first == axes_[b].last && axes_[c].first == axes_[c].last) {
+      return visit(static_cast<size_t>(axes_[a].cell_part(k) + axes_[b].cell_part(axes_[b].last) +
+                                       axes_[c].cell_part(axes_[c].last)));
+    }
+    return visit_range(k, k, axes_[b].first, axes_[b].last, axes_[c].first, axes_[c].last, a, b, c, visit);
+  }
 
   template <class Visit>
   bool visit_range(uint32_t a_first, uint32_t a_last, uint32_t b_first, uint32_t b_last, uint32_t c_first,

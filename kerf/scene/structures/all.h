@@ -34,4 +34,33 @@ inline constexpr StructureEntry kUniformGridStructure = {
     false,
     build_uniform_grid_structure};
 
+inline constexpr std::string_view kRootCells[] = {"cube", "box"};
+inline constexpr std::string_view kUndividedAxes[] = {"x", "y", "z", "shortest"};
+inline constexpr OptionSpec kQuadtreeOptions[] = {
+    {"leaf", "references above which a cell is divided", 8, 1, 255, true},
+    {"depth", "depth of the tree, at most", 16, 1, kMaxDepth, true},
+    {"cap", "references for each primitive, at most; each cell has its share by what it holds", 16, 1},
+    {"root", "the cell that is divided: a cube around the scene, or the scene's box", 0, kRootCells},
+    {"mailbox", "whether a primitive in many cells is tested once for each ray", 1, kOffOn},
+    {"axis", "the axis that is not divided", 3, kUndividedAxes},
+};
+
+std::unique_ptr<const Structure> build_octree_structure(StructureInput input, const OptionValues& options);
+inline constexpr StructureEntry kOctreeStructure = {
+    "octree",
+    "cells divided into eight at their middle",
+    "Glassner: Space Subdivision for Fast Ray Tracing, 1984",
+    std::span(kQuadtreeOptions).first<std::size(kQuadtreeOptions) - 1>(),
+    false,
+    build_octree_structure};
+
+std::unique_ptr<const Structure> build_quadtree_structure(StructureInput input, const OptionValues& options);
+inline constexpr StructureEntry kQuadtreeStructure = {
+    "quadtree",
+    "cells divided into four at their middle, along two axes",
+    "Finkel, Bentley: Quad Trees, a Data Structure for Retrieval on Composite Keys, 1974",
+    kQuadtreeOptions,
+    false,
+    build_quadtree_structure};
+
 }  // namespace kerf
