@@ -11,7 +11,7 @@ struct OctreeOptions {
   uint32_t leaf_size = 8;   ///< a cell with more references than this is divided
   uint32_t max_depth = 16;  ///< at most kMaxDepth
   double cap = 16;          ///< slots for each reference, at most
-  bool cube = true;         ///< the root is a cube at the lower corner of the box; else the box itself
+  bool cube = false;        ///< the root is a cube at the lower corner of the box; else the box itself
   int undivided = -1;       ///< the axis that a quadtree does not divide; an octree: -1
 };
 

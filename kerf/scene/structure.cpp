@@ -33,7 +33,8 @@ StructureStatistics measure(const Structure& structure) {
 namespace {
 
 constexpr LayoutEntry kLayouts[] = {kBvh2Layout};
-constexpr StructureEntry kStructures[] = {kBruteForceStructure, kUniformGridStructure, kOctreeStructure, kQuadtreeStructure};
+constexpr StructureEntry kStructures[] = {kBruteForceStructure, kUniformGridStructure, kOctreeStructure,
+                                          kQuadtreeStructure, kBihStructure};
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kerf/build/top_down.h"
 #include "kerf/scene/structure.h"
 
 namespace kerf {
@@ -34,13 +35,13 @@ inline constexpr StructureEntry kUniformGridStructure = {
     false,
     build_uniform_grid_structure};
 
-inline constexpr std::string_view kRootCells[] = {"cube", "box"};
+inline constexpr std::string_view kRootCells[] = {"box", "cube"};
 inline constexpr std::string_view kUndividedAxes[] = {"x", "y", "z", "shortest"};
 inline constexpr OptionSpec kQuadtreeOptions[] = {
     {"leaf", "references above which a cell is divided", 8, 1, 255, true},
     {"depth", "depth of the tree, at most", 16, 1, kMaxDepth, true},
     {"cap", "references for each primitive, at most; each cell has its share by what it holds", 16, 1},
-    {"root", "the cell that is divided: a cube around the scene, or the scene's box", 0, kRootCells},
+    {"root", "the cell that is divided: the scene's box, or a cube around it", 0, kRootCells},
     {"mailbox", "whether a primitive in many cells is tested once for each ray", 1, kOffOn},
     {"axis", "the axis that is not divided", 3, kUndividedAxes},
 };
@@ -62,5 +63,14 @@ inline constexpr StructureEntry kQuadtreeStructure = {
     kQuadtreeOptions,
     false,
     build_quadtree_structure};
+
+std::unique_ptr<const Structure> build_bih_structure(StructureInput input, const OptionValues& options);
+inline constexpr StructureEntry kBihStructure = {
+    "bih",
+    "a bounding interval hierarchy: planes where two children end along one axis, at the middles of a regular grid",
+    "Waechter, Keller: Instant Ray Tracing: The Bounding Interval Hierarchy, 2006",
+    TopDownOptions::kSpecs,
+    true,
+    build_bih_structure};
 
 }  // namespace kerf

@@ -49,7 +49,7 @@ class OctreeStructure : public Structure {
 std::unique_ptr<const Structure> build(const StructureInput& input, const OptionValues& options, int undivided) {
   const std::span<const Geometry> geometries = input.geometries;
   const OctreeOptions wanted{static_cast<uint32_t>(options["leaf"]), static_cast<uint32_t>(options["depth"]),
-                             options["cap"], options["root"] == 0, undivided};
+                             options["cap"], options.is_on("root"), undivided};
   Octree tree = build_octree(input.references, geometry_clipper(geometries), wanted, input.limit);
   mark_repeated(tree.slots, geometries);
   if (options.is_on("mailbox")) return std::make_unique<const OctreeStructure<Mailbox>>(std::move(tree), input);
