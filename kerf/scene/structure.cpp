@@ -33,7 +33,7 @@ StructureStatistics measure(const Structure& structure) {
 namespace {
 
 constexpr LayoutEntry kLayouts[] = {kBvh2Layout};
-constexpr StructureEntry kStructures[] = {kBruteForceStructure};
+constexpr StructureEntry kStructures[] = {kBruteForceStructure, kKdSahStructure};
 
 }  // namespace
 
