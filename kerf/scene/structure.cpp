@@ -33,8 +33,8 @@ StructureStatistics measure(const Structure& structure) {
 namespace {
 
 constexpr LayoutEntry kLayouts[] = {kBvh2Layout, kSkipPointerLayout, kPacketsLayout, kLateSplitLayout};
-constexpr StructureEntry kStructures[] = {kBihStructure,      kUniformGridStructure, kOctreeStructure,
-                                          kQuadtreeStructure, kBspStructure,         kBruteForceStructure};
+constexpr StructureEntry kStructures[] = {kKdSahStructure, kBihStructure,      kUniformGridStructure, kOctreeStructure,
+                                          kBspStructure,   kQuadtreeStructure, kBruteForceStructure};
 
 }  // namespace
 
