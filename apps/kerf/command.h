@@ -14,6 +14,8 @@ inline constexpr int kDone = 0, kBadInput = 1, kUsage = 2, kInterrupted = 130;
 void add_render(CLI::App& app, std::function<int()>& run);
 void add_check(CLI::App& app, std::function<int()>& run);
 void add_list(CLI::App& app, std::function<int()>& run);
+void add_make(CLI::App& app, std::function<int()>& run);
+void add_convert(CLI::App& app, std::function<int()>& run);
 
 /// The view that is not one of rays' hits.
 inline constexpr std::string_view kBeauty = "beauty";

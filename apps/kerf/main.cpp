@@ -70,6 +70,8 @@ int run(int argc, char** argv) {
   add_render(app, command);
   add_check(app, command);
   add_list(app, command);
+  add_make(app, command);
+  add_convert(app, command);
   app.require_subcommand(0, 1);
   try {
     app.parse(argc, argv);

@@ -17,21 +17,26 @@ constexpr std::array kModels = {
                make_plant},
 };
 
+const ModelEntry& find_model(std::string_view name) {
+  std::vector<std::string_view> names;
+  for (const ModelEntry& entry : kModels) {
+    if (entry.name == name) return entry;
+    names.push_back(entry.name);
+  }
+  throw Error(ErrorCode::invalid_option, "name", "unknown model '" + std::string(name) + "'" + suggestion(name, names));
+}
+
 }  // namespace
 
 std::span<const ModelEntry> made_models() { return kModels; }
+
+void check_model_name(std::string_view name) { find_model(name); }
 
 MadeModel make_model(std::string_view name, uint64_t triangles, uint64_t seed) {
   if (triangles > kMostTriangles) {
     throw Error(ErrorCode::too_large, std::string(name), "a model has at most 2^31 - 1 triangles");
   }
-  std::vector<std::string_view> names;
-  for (const ModelEntry& entry : kModels) {
-    if (entry.name == name) return entry.make(triangles, seed);
-    names.push_back(entry.name);
-  }
-  throw Error(ErrorCode::invalid_option, "model",
-              "unknown model '" + std::string(name) + "'" + suggestion(name, names));
+  return find_model(name).make(triangles, seed);
 }
 
 }  // namespace kerf

@@ -26,8 +26,11 @@ struct ModelEntry {
 /// All models, in alphabetical order.
 std::span<const ModelEntry> made_models();
 
-/// Makes a model by its name. Throws Error (invalid_option) with the nearest right word for a name that is not there,
-/// and Error (too_large) for more than 2^31 - 1 triangles.
+/// Throws Error (invalid_option) with the nearest right word for a name that is not there.
+void check_model_name(std::string_view name);
+
+/// Makes a model by its name. Throws as check_model_name() does, and Error (too_large) for more than 2^31 - 1
+/// triangles.
 MadeModel make_model(std::string_view name, uint64_t triangles, uint64_t seed);
 
 // One file each.
