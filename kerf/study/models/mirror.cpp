@@ -53,14 +53,13 @@ void add_housing(Faces& faces) {
   Sheets sheets{shell(0), shell(kWall), even(-1, 1, 8), even(-1, 1, 6), {}};
   sheets.holes = {{1, 1, 0.10, 0.13},  {1, 3, 0.03, 0.04},  {2, 0, 0.02, 0.025},
                   {3, 0, 0.02, 0.025}, {4, 0, 0.02, 0.025}, {5, 0, 0.02, 0.025}};
-  sheets.round_rim = true;
+  sheets.round_rim = [](Vec3d) { return Vec3d{0, 0, 1}; };
   add_sheets(faces, sheets);
 }
 
 /// The lamp in the housing's back, a strip of lens with a frame of its own.
 void add_lamp(Faces& faces) {
-  Sheets lens{shell(-2.5), shell(-0.8), even(-0.2, 0.86, 5), {0.1, 0.24}, {}};
-  lens.round_rim = true;
+  const Sheets lens{shell(-2.5), shell(-0.8), even(-0.2, 0.86, 5), {0.1, 0.24}, {}};
   add_sheets(faces, lens);
   for (int i = 0; i < 14; ++i) {  // its flutes
     const double s = -0.16 + 0.07 * i;
@@ -79,7 +78,7 @@ void add_glass(Faces& faces) {
     };
   };
   Sheets glass{sheet(-3), sheet(-5.2), even(-1, 1, 2), even(-1, 1, 2), {}};
-  glass.round_rim = true;
+  glass.round_rim = [](Vec3d p) { return Vec3d{p.x, p.y, 0}; };
   add_sheets(faces, glass);
   for (uint32_t side = 0; side < 4; ++side) {
     const auto seal = [=](double v) {
@@ -210,10 +209,11 @@ void add_arm(Faces& faces) {
   };
   Sheets plate{foot(0, 0), foot(-6, 0), even(-1, 1, 5), even(-1, 1, 5), {}};
   plate.holes = {{0, 2, 0.07, 0.09}, {4, 1, 0.07, 0.09}, {4, 3, 0.07, 0.09}, {2, 0, 0.05, 0.065}, {2, 4, 0.05, 0.065}};
-  plate.round_rim = true;
+  const auto outward = [](Vec3d p) { return Vec3d{0, p.y - kFoot.y, p.z - kFoot.z}; };
+  plate.round_rim = outward;
   add_sheets(faces, plate);
   Sheets gasket{foot(-6.2, 3), foot(-9, 3), even(-1, 1, 3), even(-1, 1, 3), {{1, 1, 0.25, 0.25}}};
-  gasket.round_rim = true;
+  gasket.round_rim = outward;
   add_sheets(faces, gasket);
   for (const auto& [s, t] : {std::array{-0.8, 0.0}, {0.8, -0.4}, {0.8, 0.4}}) {
     const Vec3d p = foot(4, 0)(s, t);

@@ -176,14 +176,11 @@ void add_rim(Faces& faces, const Sheets& sheets, Vec3d begin, Vec3d end) {
     faces.push_back(turned_over(ruled(on(sheets.outer, side), on(sheets.inner, side))));
     return;
   }
-  const Vec3d middle{(sheets.s.front() + sheets.s.back()) / 2, (sheets.t.front() + sheets.t.back()) / 2, 0};
-  faces.push_back(turned_over([=, outer = sheets.outer, inner = sheets.inner](double u, double v) {
-    constexpr double kStep = 1e-4;
-    const Vec3d p = side(u), away = p + (p - middle) * kStep;
-    const Vec3d a = outer(p.x, p.y), b = inner(p.x, p.y), half = (a - b) * 0.5;
-    const Vec3d outward = unit(outer(away.x, away.y) - a) * std::sqrt(dot(half, half));
-    return (a + b) * 0.5 + half * std::cos(kPi * v) + outward * std::sin(kPi * v);
-  }));
+  faces.push_back(
+      turned_over([=, outer = sheets.outer, inner = sheets.inner, rim = sheets.round_rim](double u, double v) {
+        const Vec3d p = side(u), a = outer(p.x, p.y), b = inner(p.x, p.y), middle = (a + b) * 0.5, half = (a - b) * 0.5;
+        return middle + half * std::cos(kPi * v) + unit(rim(middle)) * (std::sqrt(dot(half, half)) * std::sin(kPi * v));
+      }));
 }
 
 }  // namespace

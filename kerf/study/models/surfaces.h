@@ -55,7 +55,9 @@ struct Sheets {
     double radius_s, radius_t;  ///< less than half the cell
   };
   std::vector<Hole> holes;
-  bool round_rim = false;  ///< a half circle joins the sheets along their rim, else a straight wall
+  /// Where given, a half circle joins the sheets along their rim, out in this direction at a point; else a straight
+  /// wall.
+  std::function<Vec3d(Vec3d)> round_rim;
 };
 void add_sheets(Faces& faces, const Sheets& sheets);
 

@@ -39,8 +39,8 @@ class Tessellator {
   /// How many triangles mesh() makes, give or take one per cent, without making them.
   uint64_t count(const Fineness& fineness) const;
 
-  /// Makes the triangles. Throws Error (too_large) for more than 2^31 - 1, and Error (invalid_option) for a fineness
-  /// that is not positive.
+  /// Makes the triangles. Throws Error (too_large) for more than 2^31 - 1, Error (invalid_option) for a fineness that
+  /// is not positive, and Error (invalid_geometry) for a face so uneven that its edges cannot be kept short.
   Mesh mesh(const Fineness& fineness) const;
 
  private:

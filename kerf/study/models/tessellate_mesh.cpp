@@ -12,6 +12,8 @@ namespace kerf {
 namespace {
 
 constexpr uint64_t kMostTriangles = 0x7FFFFFFF;
+constexpr int kTries = 6;
+constexpr double kNextTry = 0.95;  // of the largest edge of the last one
 
 double longest_edge(const Mesh& mesh) {
   double square = 0;
@@ -119,12 +121,12 @@ Mesh Tessellator::mesh_of(const Plan& plan) const {
 
 Mesh Tessellator::mesh(const Fineness& fineness) const {
   Fineness aim = fineness;
-  while (true) {
+  for (int i = 0; i < kTries; ++i) {
     Mesh mesh = mesh_of(plan(aim));
-    const double longest = longest_edge(mesh);
-    if (longest <= fineness.max_edge) return mesh;
-    aim.max_edge *= fineness.max_edge / longest * 0.999;  // a tangent between the samples was longer than theirs
+    if (longest_edge(mesh) <= fineness.max_edge) return mesh;
+    aim.max_edge *= kNextTry;  // a tangent between the samples was longer than theirs
   }
+  throw Error(ErrorCode::invalid_geometry, "tessellation", "a face is too uneven to be cut to the largest edge");
 }
 
 }  // namespace kerf
