@@ -18,7 +18,7 @@ constexpr double kFlare = 1.0 / 3;   // makes the rim smooth at the corners of i
 constexpr double kTaper = 0.13;      // the shell is lower towards its outer end
 
 /// What is bent less than by this radius is cut by its largest edge, the rest by its chord.
-constexpr double kFlatRadius = 400;
+constexpr double kFlatRadius = 2000;
 
 /// Where a map of [-1, 1]^2 lies across the z axis: a rectangle with round corners.
 Vec3d across(double s, double t, double inset) {

@@ -207,14 +207,6 @@ Curve bezier_curve(const std::array<Vec3d, 4>& p) {
   };
 }
 
-Surface bezier_patch(const std::array<std::array<Vec3d, 4>, 4>& points) {
-  return [points](double u, double v) {
-    std::array<Vec3d, 4> row;
-    for (size_t i = 0; i < 4; ++i) row[i] = bezier_curve(points[i])(u);
-    return bezier_curve(row)(v);
-  };
-}
-
 void place_faces(Faces& faces, size_t first, const Transform& place) {
   for (size_t i = first; i < faces.size(); ++i) {
     faces[i] = [place, surface = std::move(faces[i])](double u, double v) { return place.point(surface(u, v)); };

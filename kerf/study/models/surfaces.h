@@ -61,8 +61,6 @@ struct Sheets {
 };
 void add_sheets(Faces& faces, const Sheets& sheets);
 
-/// A bicubic Bezier patch.
-Surface bezier_patch(const std::array<std::array<Vec3d, 4>, 4>& points);
 /// A cubic Bezier curve.
 Curve bezier_curve(const std::array<Vec3d, 4>& points);
 

@@ -19,6 +19,7 @@ constexpr double kStep = 1e-5;               // of the parameters, for tangents
 constexpr double kSafety = 0.99;             // of the largest edge, as tangents are known at samples only
 constexpr double kGrowth = 1.02;             // of the segments of a direction that is found too coarse
 constexpr uint32_t kMostSegments = 1 << 26;  // of one direction: twice the triangles that there may be
+constexpr uint32_t kLeastBetweenPoles = 2;   // as with one a ball has no triangles
 constexpr uint32_t kLeastAround = 3;         // segments of a closed curve
 
 double length(Vec3d v) { return std::sqrt(dot(v, v)); }
@@ -186,8 +187,10 @@ void Tessellator::join_directions() {
         face.directions[d] = static_cast<uint32_t>(least_.size());
         least_.push_back(1);
       }
-      const bool is_closed = face.sides[1 - d].edge == face.sides[3 - d].edge;
-      if (is_closed) least_[face.directions[d]] = std::max(least_[face.directions[d]], kLeastAround);
+      const uint32_t from = face.sides[3 - d].edge, to = face.sides[1 - d].edge;
+      const bool is_between_poles = edges_[from].is_point && edges_[to].is_point;
+      const uint32_t least = from == to ? kLeastAround : is_between_poles ? kLeastBetweenPoles : 1;
+      least_[face.directions[d]] = std::max(least_[face.directions[d]], least);
     }
   }
 }
