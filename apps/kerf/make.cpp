@@ -19,7 +19,8 @@ using Json = nlohmann::ordered_json;
 /// What the options were set to.
 struct Arguments {
   std::string name, output, json;
-  uint64_t triangles = 100'000, seed = 0;
+  uint64_t triangles = 100'000;
+  uint32_t seed = 0;
   int threads = 0;
   bool quiet = false;
 };

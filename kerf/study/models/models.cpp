@@ -13,8 +13,13 @@ namespace {
 constexpr uint64_t kMostTriangles = 0x7FFFFFFF;
 
 constexpr std::array kModels = {
+    ModelEntry{"city", "houses along streets, large walls with many small things on them", make_city},
+    ModelEntry{"mirror", "the side mirror of a car as a CAD assembly; stands in for the paper's Mirror", make_mirror},
+    ModelEntry{"needles", "long thin triangles in all directions", make_needles},
     ModelEntry{"plant", "pipes in all directions between floors and walls; stands in for the paper's Power Plant",
                make_plant},
+    ModelEntry{"soup", "small triangles of all shapes without any order", make_soup},
+    ModelEntry{"stadium", "a small, finely cut teapot in the middle of large coarse rows of seats", make_stadium},
 };
 
 const ModelEntry& find_model(std::string_view name) {

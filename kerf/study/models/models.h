@@ -34,6 +34,11 @@ void check_model_name(std::string_view name);
 MadeModel make_model(std::string_view name, uint64_t triangles, uint64_t seed);
 
 // One file each.
+MadeModel make_city(uint64_t triangles, uint64_t seed);
+MadeModel make_mirror(uint64_t triangles, uint64_t seed);
+MadeModel make_needles(uint64_t triangles, uint64_t seed);
 MadeModel make_plant(uint64_t triangles, uint64_t seed);
+MadeModel make_soup(uint64_t triangles, uint64_t seed);
+MadeModel make_stadium(uint64_t triangles, uint64_t seed);
 
 }  // namespace kerf
