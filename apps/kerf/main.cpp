@@ -68,6 +68,7 @@ int run(int argc, char** argv) {
   app.footer("Example: kerf render room.yaml -o room.png --spp 256");
   std::function<int()> command;
   add_render(app, command);
+  add_figure(app, command);
   add_check(app, command);
   add_list(app, command);
   add_study(app, command);
