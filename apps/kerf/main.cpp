@@ -70,6 +70,7 @@ int run(int argc, char** argv) {
   add_embree_builders();
   std::function<int()> command;
   add_render(app, command);
+  add_figure(app, command);
   add_check(app, command);
   add_list(app, command);
   add_study(app, command);
