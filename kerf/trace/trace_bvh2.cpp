@@ -56,8 +56,7 @@ Hit Bvh2Tracer::trace(const Ray& ray, Counts& counts) const {
       }
     } else {
       for (uint32_t slot = current.first; slot < current.first + current.count; ++slot) {
-        counts.count_primitives(1);
-        if (test_primitive(geometries, layout.slots[slot], prepared, best) && kAny) return best;
+        if (test_primitive(geometries, layout.slots[slot], prepared, best, counts) && kAny) return best;
       }
     }
     do {
