@@ -13,6 +13,7 @@ inline constexpr int kDone = 0, kBadInput = 1, kUsage = 2, kInterrupted = 130;
 /// Adds one subcommand each; what it does is put into `run`, which returns the exit code.
 void add_render(CLI::App& app, std::function<int()>& run);
 void add_check(CLI::App& app, std::function<int()>& run);
+void add_inspect(CLI::App& app, std::function<int()>& run);
 void add_list(CLI::App& app, std::function<int()>& run);
 
 /// The view that is not one of rays' hits.

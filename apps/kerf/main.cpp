@@ -69,6 +69,7 @@ int run(int argc, char** argv) {
   std::function<int()> command;
   add_render(app, command);
   add_check(app, command);
+  add_inspect(app, command);
   add_list(app, command);
   app.require_subcommand(0, 1);
   try {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -22,6 +23,9 @@ struct SceneArguments {
 /// Adds the options for them to a command.
 void add_scene_options(CLI::App& command, SceneArguments& arguments);
 void add_camera_options(CLI::App& command, SceneArguments& arguments);
+
+/// Width and height of a picture from "960x640"; throws Error (invalid_option) for what is none.
+std::array<uint32_t, 2> parse_size(const std::string& text);
 
 /// A scene with all that its file may leave open settled.
 struct SceneInput {

@@ -8,6 +8,7 @@
 
 #include "kerf/base/fp_environment.h"
 #include "kerf/base/parallel.h"
+#include "kerf/study/primitive_numbers.h"
 
 namespace kerf {
 namespace {
@@ -138,24 +139,22 @@ class FlatTree {
  public:
   FlatTree(const Scene& scene, const WorkLimit& limit);
 
-  size_t primitives() const { return first_reference_.size() - 1; }
+  size_t primitives() const { return numbers_.size(); }
   Polygon polygon(size_t primitive) const {
-    const auto after = std::upper_bound(first_primitive_.begin(), first_primitive_.end(), primitive);
-    const auto geometry = static_cast<size_t>(after - first_primitive_.begin()) - 1;
-    return polygon_of(geometries_[geometry], static_cast<uint32_t>(primitive - first_primitive_[geometry]));
+    const LeafSlot slot = numbers_.slot(primitive);
+    return polygon_of(geometries_[slot.geometry()], slot.primitive);
   }
   /// The sum over all nodes of their cost times the area that they cut out of a primitive without having it.
   double overlap(size_t primitive, const Surface& surface, const WorkLimit& limit) const;
 
  private:
-  size_t number(const LeafSlot& slot) const { return first_primitive_[slot.geometry()] + slot.primitive; }
   void collect(const Structure& structure);
   void add(uint32_t node);
   void add_siblings(size_t begin, size_t end);
   void sum_subtrees();
 
   std::span<const Geometry> geometries_;
-  std::vector<size_t> first_primitive_;  // of each geometry
+  PrimitiveNumbers numbers_;
   std::vector<FlatNode> nodes_;
   std::vector<Subtree> subtrees_;        // of each node
   std::vector<size_t> first_reference_;  // of each primitive, in:
@@ -167,12 +166,9 @@ class FlatTree {
   std::vector<uint32_t> place_, waiting_;
 };
 
-FlatTree::FlatTree(const Scene& scene, const WorkLimit& limit) : geometries_(scene.geometries()) {
-  size_t count = 0;
-  for (const Geometry& geometry : geometries_) {
-    first_primitive_.push_back(count);
-    count += primitive_count(geometry);
-  }
+FlatTree::FlatTree(const Scene& scene, const WorkLimit& limit)
+    : geometries_(scene.geometries()), numbers_(geometries_) {
+  const size_t count = numbers_.size();
   const BuildReport& report = scene.report();
   limit.check(report.nodes * (2 * sizeof(FlatNode) + sizeof(Subtree) + sizeof(uint32_t)) +
               (count + 1) * sizeof(size_t) + report.references * (sizeof(held_[0]) + sizeof(uint32_t)));
@@ -200,10 +196,10 @@ void FlatTree::collect(const Structure& structure) {
   };
   structure.visit_nodes([&](const NodeView& node) {
     close_to(node.depth);
-    const auto number_of_node = static_cast<uint32_t>(visited_.size());
-    path.push_back(number_of_node);
+    const auto place = static_cast<uint32_t>(visited_.size());
+    path.push_back(place);
     visited_.push_back({node.bounds, 0, node.is_leaf ? static_cast<uint32_t>(node.slots.size()) : 1});
-    for (const LeafSlot& slot : node.slots) held_.emplace_back(number_of_node, number(slot));
+    for (const LeafSlot& slot : node.slots) held_.emplace_back(place, numbers_.number(slot));
   });
   close_to(0);
 }

@@ -11,7 +11,7 @@
 namespace kerf {
 
 /// A count for each primitive, by geometry, as slots number them.
-using PrimitiveTally = std::vector<std::vector<uint32_t>>;
+using PrimitiveTally = std::vector<std::vector<uint64_t>>;
 
 /// The work that rays made. The same figures in every structure, added up over rays.
 struct TraceCounts {
