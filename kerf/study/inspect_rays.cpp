@@ -17,12 +17,24 @@ constexpr int kRuns = 3;
 constexpr size_t kLeastStretch = 4096;  // rays that are worth a tally of their own
 constexpr size_t kMostStretches = 8;    // of which each has one
 
-/// From where a ray hit something, to the side that it came from.
+/// Where a ray hit something, from the shape itself: t alone is not exact enough to start another ray from.
+SurfacePoint point_of(const Geometry& geometry, const Ray& ray, const Hit& hit) {
+  if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) {
+    return triangle_point(mesh->triangle(hit.primitive), hit.u, hit.v);
+  }
+  if (const auto* shapes = std::get_if<Strided<Parallelogram>>(&geometry.shapes)) {
+    return parallelogram_point((*shapes)[hit.primitive], hit.u, hit.v);
+  }
+  const Sphere sphere = (*std::get_if<Strided<Sphere>>(&geometry.shapes))[hit.primitive];
+  return sphere_point(sphere,
+                      to_double(ray.origin) - to_double(sphere.center) + to_double(ray.direction) * double{hit.t});
+}
+
+/// From a hit to the side that the ray came from.
 Ray diffuse_ray(const Scene& scene, const Ray& from, const Hit& hit, uint32_t pixel) {
-  Vec3f normal = scene.normal(hit);
+  const SurfacePoint point = point_of(scene.geometries()[hit.geometry], from, hit);
+  Vec3f normal = to_float(point.normal);
   if (dot(normal, from.direction) > 0) normal = -normal;
-  const SurfacePoint point{to_double(from.origin) + to_double(from.direction) * double{hit.t}, to_double(normal),
-                           largest(abs(to_double(from.origin)))};
   Sampler sampler(1, pixel, 0);
   Ray ray;
   ray.direction = Frame(normal).to_world(cosine_direction(sampler.next_pair()));

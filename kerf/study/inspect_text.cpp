@@ -89,11 +89,6 @@ void add_test_findings(const Inspection& i, std::vector<std::string>& all) {
     return;
   }
   const auto of_all = [&](size_t n) { return share_of(static_cast<double>(n), static_cast<double>(kept(i))); };
-  if (const size_t top = i.most_tested.size(); top > 0) {
-    all.push_back(fmt::format("{} of {} ({}) cost{} {} of the {} tests.", grouped(top), counted(kept(i), word_of(i)),
-                              percent(of_all(top)), top == 1 ? "s" : "",
-                              percent(share_of(top_tests(i), static_cast<double>(i.tests))), word_of(i)));
-  }
   for (const TestShare& share : i.shares) {
     if (share.share != 0.5) continue;
     const double part = of_all(share.primitives);
@@ -101,14 +96,19 @@ void add_test_findings(const Inspection& i, std::vector<std::string>& all) {
                               part <= kFew ? "A few stand out" : "The cost is spread over many",
                               counted(share.primitives, word_of(i)), percent(part), costly_finding(i)));
   }
+  if (const size_t top = i.most_tested.size(); top > 0) {
+    all.push_back(fmt::format("The {} most tested of {} ({}) cost{} {} of the {} tests.", grouped(top),
+                              counted(kept(i), word_of(i)), percent(of_all(top)), top == 1 ? "s" : "",
+                              percent(share_of(top_tests(i), static_cast<double>(i.tests))), word_of(i)));
+  }
 }
 
 std::string box_finding(const Inspection& i) {
-  std::string text = fmt::format("The boxes around the {}s have {} times their surface", word_of(i),
-                                 number(share_of(i.box_area, i.surface)));
-  return text + fmt::format("; {} of what they waste is that of {}.",
-                            percent(share_of(i.top_wasted, i.box_area - i.surface)),
-                            counted(i.most_wasted.size(), word_of(i)));
+  const std::string text = fmt::format("The boxes around the {}s have {} times the surface of what they hold",
+                                       word_of(i), number(share_of(i.box_area, i.surface)));
+  if (i.most_wasted.empty()) return text + ".";
+  return text + fmt::format("; {} of the excess is that of the worst {}.",
+                            percent(share_of(i.top_wasted, i.box_area - i.surface)), grouped(i.most_wasted.size()));
 }
 
 std::string trial_finding(const Inspection& i) {
