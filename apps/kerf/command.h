@@ -15,6 +15,7 @@ inline constexpr int kDone = 0, kBadInput = 1, kUsage = 2, kInterrupted = 130;
 void add_render(CLI::App& app, std::function<int()>& run);
 void add_figure(CLI::App& app, std::function<int()>& run);
 void add_check(CLI::App& app, std::function<int()>& run);
+void add_inspect(CLI::App& app, std::function<int()>& run);
 void add_list(CLI::App& app, std::function<int()>& run);
 void add_study(CLI::App& app, std::function<int()>& run);
 void add_make(CLI::App& app, std::function<int()>& run);

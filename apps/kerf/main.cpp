@@ -72,6 +72,7 @@ int run(int argc, char** argv) {
   add_render(app, command);
   add_figure(app, command);
   add_check(app, command);
+  add_inspect(app, command);
   add_list(app, command);
   add_study(app, command);
   add_make(app, command);

@@ -10,9 +10,12 @@ namespace kerf {
 ///
 ///     EPO = sum over nodes n of C(n) * area((S \ Q(n)) within n) / area(S)
 ///
-/// with S all surfaces, Q(n) those of primitives that have a reference below n, C(n) 1 for an inner node and the number
-/// of slots for a leaf. 0 for structures whose cells do not overlap. Triangles and parallelograms are clipped in
-/// double; spheres are left out. Parallel, the same for any number of threads. Throws Error (stopped) at the limit.
+/// with S the surfaces of all primitives, one over another counted each, Q(n) those of primitives that have a reference
+/// below n, C(n) 1 for an inner node and the number of slots for a leaf; so in the unit of Structure::cost(). Boxes are
+/// closed: what lies in a face counts. 0 where no surface reaches into a leaf or an inner node that does not hold it,
+/// as in a grid, and in a scene without area. Triangles and parallelograms are clipped in double; spheres, invalid and
+/// degenerate primitives are left out. Parallel, the same for any number of threads. Throws Error (stopped) at the
+/// limit, and Error (not_built).
 double end_point_overlap(const Scene& scene, const WorkLimit& limit = {});
 
 }  // namespace kerf

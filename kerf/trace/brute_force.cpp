@@ -36,15 +36,14 @@ Hit BruteForce::trace(const Ray& ray, Counts& counts) const {
   uint32_t candidates[kBlock + TriangleColumns::kPadding];
   for (size_t begin = 0; begin < triangle_slots_.size(); begin += kBlock) {
     const size_t end = std::min(begin + kBlock, triangle_slots_.size());
-    counts.count_primitives(end - begin);
+    counts.count_primitives(std::span(triangle_slots_).subspan(begin, end - begin));
     const size_t found = filter_(triangles_, prepared, begin, end, candidates);
     for (size_t i = 0; i < found; ++i) {
       if (test_primitive(geometries_, triangle_slots_[candidates[i]], prepared, best) && kAny) return best;
     }
   }
   for (const LeafSlot& slot : other_slots_) {
-    counts.count_primitives(1);
-    if (test_primitive(geometries_, slot, prepared, best) && kAny) return best;
+    if (test_primitive(geometries_, slot, prepared, best, counts) && kAny) return best;
   }
   return finished(best);
 }

@@ -20,6 +20,14 @@ inline bool test_primitive(std::span<const Geometry> geometries, const LeafSlot&
   return true;
 }
 
+/// The same, and counts the test. A template over Counts costs nothing where counts are not wanted.
+template <class Counts>
+bool test_primitive(std::span<const Geometry> geometries, const LeafSlot& slot, const PreparedRay& ray, Hit& best,
+                    Counts& counts) {
+  counts.count_primitives(std::span(&slot, 1));
+  return test_primitive(geometries, slot, ray, best);
+}
+
 /// What trace() returns: the hit found, or a miss with infinite t.
 inline Hit finished(const Hit& best) { return best ? best : Hit{}; }
 

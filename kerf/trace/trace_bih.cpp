@@ -64,8 +64,7 @@ Hit BihTracer::trace(const Ray& ray, Counts& counts) const {
       }
     } else {
       for (const LeafSlot& slot : std::span(bih.slots).subspan(node.first(), node.count())) {
-        counts.count_primitives(1);
-        if (test_primitive(geometries, slot, prepared, best) && kAny) return best;
+        if (test_primitive(geometries, slot, prepared, best, counts) && kAny) return best;
       }
     }
     do {

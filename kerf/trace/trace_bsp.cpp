@@ -108,8 +108,7 @@ Hit BspTracer::trace(const Ray& ray, Counts& counts) const {
       }
     } else {
       for (uint32_t slot = node.first; slot < node.first + node.count; ++slot) {
-        counts.count_primitives(1);
-        if (test_primitive(geometries, tree.slots[slot], prepared, best) && kAny) return best;
+        if (test_primitive(geometries, tree.slots[slot], prepared, best, counts) && kAny) return best;
       }
     }
     do {

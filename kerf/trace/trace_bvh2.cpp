@@ -45,8 +45,7 @@ struct Walk {
   /// Whether the walk is over: any hit is enough.
   bool test_leaf(const Waiting& leaf) const {
     for (uint32_t slot = leaf.first; slot < leaf.first + leaf.count; ++slot) {
-      counts.count_primitives(1);
-      if (test_primitive(tracer.geometries, tracer.layout.slots[slot], ray, best) && kAny) return true;
+      if (test_primitive(tracer.geometries, tracer.layout.slots[slot], ray, best, counts) && kAny) return true;
     }
     return false;
   }

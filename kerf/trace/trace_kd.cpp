@@ -97,8 +97,7 @@ Hit KdTracer<kMailbox>::trace(const Ray& ray, Counts& counts) const {
     }
     for (const LeafSlot *slot = slots + node.first(), *end = slot + node.count(); slot != end; ++slot) {
       if (mailbox.holds(*slot)) continue;
-      counts.count_primitives(1);
-      if (test_primitive(geometries, *slot, prepared, best) && kAny) return best;
+      if (test_primitive(geometries, *slot, prepared, best, counts) && kAny) return best;
     }
     do {
       if (waiting == 0) return finished(best);

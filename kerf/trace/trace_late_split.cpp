@@ -35,8 +35,7 @@ Hit LateSplitTracer::trace(const Ray& ray, Counts& counts) const {
   while (true) {
     counts.count_nodes(1);
     if (current.kind == LateSplitNode::kWholeLeaf || current.kind == LateSplitNode::kPiece) {
-      counts.count_primitives(1);
-      if (test_primitive(geometries, tree.slots[current.first], prepared, best) && kAny) return best;
+      if (test_primitive(geometries, tree.slots[current.first], prepared, best, counts) && kAny) return best;
       if (restores && current.kind == LateSplitNode::kPiece) waiting = outside;
     } else {
       if (current.kind == LateSplitNode::kCutLeaf) outside = waiting;

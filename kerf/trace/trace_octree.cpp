@@ -84,8 +84,7 @@ Hit OctreeTracer<Seen>::trace(const Ray& ray, Counts& counts) const {
     if (node.is_leaf()) {
       for (const LeafSlot& slot : std::span(tree.slots).subspan(node.first, node.bits)) {
         if (slot.is_repeated() && seen.has_seen(slot)) continue;
-        counts.count_primitives(1);
-        if (test_primitive(geometries, slot, prepared, best) && kAny) return best;
+        if (test_primitive(geometries, slot, prepared, best, counts) && kAny) return best;
       }
     } else {
       const Crossings crossings(current, box_ray, tree.axes, best.t);

@@ -218,8 +218,7 @@ class PacketWalk {
       }
       counts_.count_nodes(1);
       for (uint32_t slot = leaf.first; slot < leaf.first + leaf.count; ++slot) {
-        counts_.count_primitives(1);
-        is_closer |= test_primitive(tracer_.geometries, tracer_.layout.slots[slot], ray.prepared, ray.best);
+        is_closer |= test_primitive(tracer_.geometries, tracer_.layout.slots[slot], ray.prepared, ray.best, counts_);
       }
     }
     if (is_closer) packet_.find_limit();

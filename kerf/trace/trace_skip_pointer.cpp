@@ -25,8 +25,7 @@ Hit SkipPointerTracer::trace(const Ray& ray, Counts& counts) const {
     }
     counts.count_nodes(1);
     for (uint32_t slot = node.first; slot < node.first + node.count; ++slot) {  // of an inner node: none
-      counts.count_primitives(1);
-      if (test_primitive(geometries, layout.slots[slot], prepared, best) && kAny) return best;
+      if (test_primitive(geometries, layout.slots[slot], prepared, best, counts) && kAny) return best;
     }
     ++at;
   }

@@ -2,27 +2,37 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "kerf/geometry/hit.h"
 #include "kerf/geometry/ray.h"
+#include "kerf/tree/bvh.h"
 
 namespace kerf {
 
+/// A count for each primitive, by geometry, as slots number them.
+using PrimitiveTally = std::vector<std::vector<uint64_t>>;
+
 /// The work that rays made. The same figures in every structure, added up over rays.
 struct TraceCounts {
-  uint64_t nodes = 0;       ///< nodes whose own box the ray enters, culled ones not: root, inner nodes, leaves
-  uint64_t primitives = 0;  ///< primitive tests, repeats included
-  uint64_t boxes = 0;       ///< box tests
+  uint64_t nodes = 0;               ///< nodes whose own box the ray enters, culled ones not: root, inner nodes, leaves
+  uint64_t primitives = 0;          ///< primitive tests, repeats included
+  uint64_t boxes = 0;               ///< box tests
+  PrimitiveTally* tests = nullptr;  ///< where given: the primitive tests of each primitive, added up
 
   void count_nodes(uint64_t n) { nodes += n; }
-  void count_primitives(uint64_t n) { primitives += n; }
+  void count_primitives(std::span<const LeafSlot> tested) {
+    primitives += tested.size();
+    if (tests == nullptr) return;
+    for (const LeafSlot& slot : tested) ++(*tests)[slot.geometry()][slot.primitive];
+  }
   void count_boxes(uint64_t n) { boxes += n; }
 };
 
 /// Stands where counts are not wanted, and costs nothing.
 struct NoCounts {
   void count_nodes(uint64_t) {}
-  void count_primitives(uint64_t) {}
+  void count_primitives(std::span<const LeafSlot>) {}
   void count_boxes(uint64_t) {}
 };
 

@@ -29,8 +29,7 @@ Hit UniformGridTracer<Seen>::trace(const Ray& ray, Counts& counts) const {
     counts.count_nodes(1);
     for (const LeafSlot& slot : grid.slots_of(cell)) {
       if (slot.is_repeated() && seen.has_seen(slot)) continue;
-      counts.count_primitives(1);
-      if (test_primitive(geometries, slot, prepared, best) && kAny) return false;
+      if (test_primitive(geometries, slot, prepared, best, counts) && kAny) return false;
     }
     return true;
   });

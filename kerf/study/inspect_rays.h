@@ -1,0 +1,31 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "kerf/io/camera.h"
+#include "kerf/scene/scene.h"
+
+namespace kerf {
+
+/// A primary ray through each pixel and a cosine-distributed one from each of their hits, in that order.
+struct PictureRays {
+  std::vector<Ray> rays;
+  size_t primary = 0;
+};
+PictureRays picture_rays(const Scene& scene, const Camera& camera, uint32_t width, uint32_t height);
+
+/// What rays did, in sum and by primitive.
+struct RayTally {
+  TraceCounts counts;
+  uint64_t hit_count = 0;
+  PrimitiveTally tests, hits;  ///< hits: rays that end there
+};
+
+/// Traces the rays with all threads of the caller; the same for any number.
+RayTally tally_rays(const Scene& scene, std::span<const Ray> rays);
+
+/// The median of several runs over the rays on one thread, for each scene; they take turns.
+std::vector<double> time_rays(std::span<const Scene* const> scenes, std::span<const Ray> rays);
+
+}  // namespace kerf
