@@ -118,7 +118,7 @@ double sa_max_for(const SceneDescription& scene, double budget) {
   const Scene probe = build_scene(scene, {.structure = "brute_force", .skip_invalid = true});
   const std::span<const Geometry> geometries = probe.geometries();
   const std::vector<Reference> whole = make_references(geometries, true).references;
-  const double sa_max = early_split(whole, geometry_clipper(geometries), EarlySplit::with_budget(budget)).sa_max;
+  const double sa_max = early_split(whole, geometry_clipper(geometries), EarlySplit::with_budget(budget)).limit;
   return std::stod(fmt::format("{:.4g}", sa_max));
 }
 
