@@ -96,7 +96,7 @@ Vec3d oklab_of(Vec3f c) {
           0.0259040371 * l + 0.7827717662 * m - 0.8086757660 * s};
 }
 
-Vec3f category_color(size_t number) {
+Vec3f category_color(uint32_t number) {
   // Hues of one lightness, far apart first.
   constexpr double kHues[] = {255, 40, 145, 320, 85, 200, 0, 290};
   const double hue = kHues[number % std::size(kHues)] * std::numbers::pi / 180;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "kerf/base/vec3.h"
 
 namespace kerf {
@@ -14,6 +16,6 @@ Vec3f heat_color(double x);
 Vec3d oklab_of(Vec3f displayed);
 
 /// Well apart from each other, neither light nor dark: one for each number, again from the first after the eighth.
-Vec3f category_color(size_t number);
+Vec3f category_color(uint32_t number);
 
 }  // namespace kerf

@@ -72,11 +72,11 @@ struct Drawing {
   void rectangle(Point2 lower, Point2 upper, const Paint& paint) {
     shapes.emplace_back(DrawnRectangle{lower, upper, paint});
   }
-  void line(Point2 a, Point2 b, const Ink& ink, double width) {
-    shapes.emplace_back(DrawnPath{{a, b}, false, {std::nullopt, ink, width}});
+  void line(Point2 a, Point2 b, const Ink& ink, double pen) {
+    shapes.emplace_back(DrawnPath{{a, b}, false, {std::nullopt, ink, pen}});
   }
-  void text(Point2 at, std::string text, double size, Anchor anchor = Anchor::start, const Ink& ink = {}) {
-    shapes.emplace_back(DrawnText{at, std::move(text), size, anchor, ink});
+  void text(Point2 at, std::string letters, double size, Anchor anchor = Anchor::start, const Ink& ink = {}) {
+    shapes.emplace_back(DrawnText{at, std::move(letters), size, anchor, ink});
   }
   void picture(Point2 at, Image image) { shapes.emplace_back(DrawnPicture{at, std::move(image)}); }
 

@@ -57,7 +57,8 @@ void add_legend(Drawing& drawing, Point2 at, const Layout& layout, const HeatSca
   const int steps = static_cast<int>(layout.height);
   for (int i = 0; i < steps; ++i) {
     const double top = at.y + layout.height * i / steps, share = 1 - (i + 0.5) / steps;
-    drawing.rectangle({at.x, top}, {at.x + layout.bar, at.y + layout.height * (i + 1) / steps},
+    // Down to the end, where the next ones cover it: no seams between them.
+    drawing.rectangle({at.x, top}, {at.x + layout.bar, at.y + layout.height},
                       {Ink{heat_color(share)}, std::nullopt, 0});
   }
   const Ink ink{{0.2F, 0.2F, 0.2F}};
@@ -130,7 +131,8 @@ Drawing heat_figure(std::span<const HeatRow> rows) {
   Drawing drawing;
   if (rows.empty()) return drawing;
   const Layout layout{static_cast<double>(rows[0].nodes.width), static_cast<double>(rows[0].nodes.height)};
-  const double upper = layout.margin + layout.header, lower = upper + layout.height + layout.title + layout.gap;
+  const double upper = std::round(layout.margin + layout.header);
+  const double lower = std::round(upper + layout.height + layout.title + layout.gap);
   drawing.width = layout.left(rows.size()) + layout.legend;
   drawing.height = lower + layout.height + layout.title + 0.3 * layout.margin;
   drawing.group("rows");

@@ -104,12 +104,13 @@ SceneDescription scattered_triangles() {
                                {3.9, 3.0, 0.5, 0.1}, {5.6, 2.7, 1.1, 1.3},  {7.2, 3.1, 0.4, 0.5}, {8.7, 2.8, 0.8, 1.8},
                                {1.4, 4.6, 0.8, 1.2}, {3.1, 4.7, 0.6, 0.4},  {4.7, 4.9, 0.5, 1.7}, {6.2, 4.5, 0.6, 0.8},
                                {7.6, 4.8, 0.9, 0.0}, {9.3, 4.5, 0.5, 1.45}, {5.2, 3.9, 0.3, 0.6}, {8.3, 3.8, 0.3, 1.0}};
+  constexpr double kLength = 1.2;
   Mesh mesh;
   for (const Place& place : kPlaces) {
     const auto first = static_cast<uint32_t>(mesh.vertices.size());
-    for (const double angle : {0.0, 2.3, 3.6}) {
-      mesh.vertices.push_back(to_float(Vec3d{place.x + place.radius * std::cos(place.turn + angle),
-                                             place.y + place.radius * std::sin(place.turn + angle), 0}));
+    for (const double angle : {0.0, 2.9, 3.45}) {
+      mesh.vertices.push_back(to_float(Vec3d{place.x + kLength * place.radius * std::cos(place.turn + angle),
+                                             place.y + kLength * place.radius * std::sin(place.turn + angle), 0}));
     }
     mesh.triangles.push_back({first, first + 1, first + 2});
   }

@@ -56,10 +56,11 @@ void add_row(Drawing& drawing, const Grid& grid, size_t row, const Scene& scene,
   const double top = grid.top(row);
   const std::vector<TreeBox> input = input_boxes(scene, pipeline);
   drawing.group(fmt::format("row{}-caption", row));
-  add_fitted_text(
-      drawing, {grid.left(0), top - 0.6 * grid.text},
-      fmt::format("{}: {} boxes in, {} nodes, depth {}", pipeline, input.size(), tree.size(), scene.report().depth),
-      1.05 * grid.text, grid.width(levels + 1) - 2 * grid.margin);
+  add_fitted_text(drawing, {grid.left(0), top - 0.6 * grid.text},
+                  fmt::format("{}: {} boxes in{}, {} nodes, depth {}", pipeline, input.size(),
+                              input.size() > kMostBoxes ? fmt::format(" (the {} largest shown)", kMostBoxes) : "",
+                              tree.size(), scene.report().depth),
+                  1.05 * grid.text, grid.width(levels + 1) - 2 * grid.margin);
   add_panel(drawing, {grid.left(0), top}, view, scene, input, fmt::format("row{}-input", row), grid.text);
   for (uint32_t level = 0; level < levels; ++level) {
     add_panel(drawing, {grid.left(level + 1), top}, view, scene, level_of(tree, level),
@@ -71,7 +72,8 @@ void add_row(Drawing& drawing, const Grid& grid, size_t row, const Scene& scene,
 
 SceneDescription crossing_triangles() {
   Mesh mesh;
-  mesh.vertices = {{0, 0, 0}, {8, 3.6F, 0.02F}, {7.6F, 4, 0.04F}, {0, 4, 0.02F}, {7.6F, 0, 0}, {8, 0.4F, 0.04F}};
+  mesh.vertices = {{0, 0, 0},           {8, 3.6F, 0.02F}, {7.6F, 4, 0.04F},
+                   {0.4F, 4.5F, 0.02F}, {8, 0.5F, 0},     {8.4F, 0.9F, 0.04F}};
   mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
   SceneDescription scene;
   scene.name = "two triangles";

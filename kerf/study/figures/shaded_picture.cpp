@@ -26,7 +26,7 @@ struct Lighting {
     if (dot(normal, direction) > 0) normal = -normal;
     const float facing = -dot(normal, direction);
     const float light =
-        0.30F + 0.30F * facing + 0.34F * std::max(dot(normal, key), 0.0F) + 0.12F * std::max(dot(normal, fill), 0.0F);
+        0.42F + 0.30F * facing + 0.30F * std::max(dot(normal, key), 0.0F) + 0.12F * std::max(dot(normal, fill), 0.0F);
     return kSurface * std::min(light, 1.0F);
   }
 };
@@ -105,7 +105,8 @@ Image shaded_picture(const Scene& scene, const Camera& camera, const ShadedOptio
 }
 
 Image wireframe_picture(const Scene& scene, const Camera& camera, uint32_t width, uint32_t height, int threads) {
-  return shaded_picture(scene, camera, {.width = width, .height = height, .line_width = 1.2, .threads = threads});
+  return shaded_picture(scene, camera,
+                        {.width = width, .height = height, .line_width = kWireWidth, .threads = threads});
 }
 
 Image distance_picture(const Scene& scene, const Camera& camera, const ShadedOptions& options) {

@@ -6,6 +6,9 @@
 
 namespace kerf {
 
+/// The width of wires in pixels that looks right in print and on screens.
+inline constexpr double kWireWidth = 1.2;
+
 struct ShadedOptions {
   uint32_t width = 960, height = 640;
   uint32_t samples = 4;   ///< rays of each pixel, in each direction: 4 are 16 rays
