@@ -28,10 +28,10 @@ constexpr auto kRandomOptions = with_shared({{"candidates", "planes tried at eac
 
 constexpr std::string_view kInsertionOrders[] = {"given", "shuffled"};
 constexpr std::string_view kInsertionSearches[] = {"way", "all"};
-constexpr auto kInsertionOptions =
-    with_shared({{"order", "the order in which references are inserted", 1, kInsertionOrders},
-                 {"search", "places tried: on the way of least growth, or all that may be better", 1, kInsertionSearches},
-                 kSeed});
+constexpr auto kInsertionOptions = with_shared(
+    {{"order", "the order in which references are inserted", 1, kInsertionOrders},
+     {"search", "places tried: on the way of least growth, or all that may be better", 1, kInsertionSearches},
+     kSeed});
 
 constexpr BuilderEntry kBuilders[] = {
     {"binned_sah", "the cheapest of a few planes by the surface area heuristic",
@@ -50,8 +50,8 @@ constexpr BuilderEntry kBuilders[] = {
      "Havran, Herzog, Seidel: On the Fast Construction of Spatial Hierarchies for Ray Tracing, 2006", kShelvesOptions,
      build_oversize_shelves},
     {"insertion", "one reference after another, each where it adds least to the cost",
-     "Goldsmith, Salmon: Automatic Creation of Object Hierarchies for Ray Tracing, 1987 (search=way)", kInsertionOptions,
-     build_insertion},
+     "Goldsmith, Salmon: Automatic Creation of Object Hierarchies for Ray Tracing, 1987 (search=way)",
+     kInsertionOptions, build_insertion},
 };
 
 }  // namespace

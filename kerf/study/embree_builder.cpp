@@ -50,15 +50,15 @@ void* create_node(RTCThreadLocalAllocator allocator, unsigned int, void*) {
 }
 
 void set_children(void* node, void** children, unsigned int count, void*) {
-  for (unsigned int i = 0; i < count; ++i) static_cast<EmbreeNode*>(node)->child[i] = static_cast<EmbreeNode*>(children[i]);
+  for (unsigned int i = 0; i < count; ++i)
+    static_cast<EmbreeNode*>(node)->child[i] = static_cast<EmbreeNode*>(children[i]);
 }
 
 /// The boxes follow from the leaves.
 void set_bounds(void*, const RTCBounds**, unsigned int, void*) {}
 
 void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* primitives, size_t count, void*) {
-  void* memory =
-      rtcThreadLocalAlloc(allocator, sizeof(EmbreeNode) + count * sizeof(EmbreeSlot), alignof(EmbreeNode));
+  void* memory = rtcThreadLocalAlloc(allocator, sizeof(EmbreeNode) + count * sizeof(EmbreeSlot), alignof(EmbreeNode));
   auto* leaf = new (memory) EmbreeNode{{}, static_cast<uint32_t>(count)};
   for (size_t i = 0; i < count; ++i) {
     const RTCBuildPrimitive& p = primitives[i];
@@ -159,8 +159,7 @@ static_assert(sizeof(EmbreePrimitive) == 32);
 Bvh build(BuildInput input, const OptionValues& options, RTCBuildQuality quality, double budget) {
   const size_t count = input.references.size();
   if (count == 0) return {};
-  const size_t capacity =
-      std::min(kMaxReferences, static_cast<size_t>(std::ceil(budget * static_cast<double>(count))));
+  const size_t capacity = std::min(kMaxReferences, static_cast<size_t>(std::ceil(budget * static_cast<double>(count))));
   input.limit.check(capacity * (sizeof(EmbreePrimitive) + sizeof(EmbreeSlot) + 2 * sizeof(EmbreeNode)));
   std::vector<EmbreePrimitive> primitives(capacity);
   for (size_t i = 0; i < count; ++i) {
@@ -210,8 +209,8 @@ constexpr BuilderEntry kMedium = {
     }};
 constexpr BuilderEntry kHigh = {
     "embree_high", "Embree's build with spatial splits, built on one thread",
-    "Wald, Woop, Benthin, Johnson, Ernst: Embree, a Kernel Framework for Efficient CPU Ray Tracing, 2014",
-    kHighOptions, [](BuildInput input, const OptionValues& options) {
+    "Wald, Woop, Benthin, Johnson, Ernst: Embree, a Kernel Framework for Efficient CPU Ray Tracing, 2014", kHighOptions,
+    [](BuildInput input, const OptionValues& options) {
       return build(std::move(input), options, RTC_BUILD_QUALITY_HIGH, options["budget"]);
     }};
 

@@ -54,25 +54,25 @@ class Packet {
         is_coherent_ = is_coherent_ && ray.box_ray.near_side[axis] == (*this)[0].box_ray.near_side[axis];
       }
     }
-    find_limit();
+    find_limits();
   }
 
-  /// The farthest that any ray may still hit something.
-  void find_limit() {
-    limit_ = -kInfinity;
-    for (uint32_t i = 0; i < size_; ++i) limit_ = std::max(limit_, (*this)[i].best.t);
+  /// The farthest that any ray from each one on may still hit something.
+  void find_limits() {
+    float limit = -kInfinity;
+    for (uint32_t i = size_; i-- > 0;) limits_[i] = limit = std::max(limit, (*this)[i].best.t);
   }
 
   bool is_coherent() const { return is_coherent_; }
 
-  /// Surely no ray enters the box. The same operations as for one ray, on the ends of intervals: rounding keeps their
-  /// order, so each ray's entry is at least, and its exit at most, what comes out here.
-  bool all_miss(const float* box) const {
-    const BoxRay& first = (*this)[0].box_ray;
-    float near = t_min_, far = limit_;
+  /// Surely no ray from `first` on enters the box. The same operations as for one ray, on the ends of intervals:
+  /// rounding keeps their order, so each ray's entry is at least, and its exit at most, what comes out here.
+  bool all_miss(const float* box, uint32_t first) const {
+    const Sides& sides = (*this)[0].box_ray;
+    float near = t_min_, far = limits_[first];
     for (uint32_t axis = 0; axis < 3; ++axis) {
-      const float t_near = axes_[axis].earliest_entry(box[first.near_side[axis]]);
-      const float t_far = axes_[axis].latest_exit(box[first.far_side[axis]]);
+      const float t_near = axes_[axis].earliest_entry(box[sides.near_side[axis]]);
+      const float t_far = axes_[axis].latest_exit(box[sides.far_side[axis]]);
       near = t_near > near ? t_near : near;
       far = t_far < far ? t_far : far;
     }
@@ -136,9 +136,10 @@ class Packet {
   };
 
   std::array<Storage, PacketTracer::kLargest> rays_;
+  std::array<float, PacketTracer::kLargest> limits_;
   uint32_t size_ = 0;
   Interval axes_[3];
-  float t_min_ = kInfinity, limit_ = -kInfinity;
+  float t_min_ = kInfinity;
   bool is_coherent_ = true;
 };
 
@@ -183,7 +184,7 @@ class PacketWalk {
     if (packet_[first].enters(child)) return first;
     if (packet_.is_coherent()) {
       counts_.count_boxes(1);
-      if (packet_.all_miss(child.sides())) return packet_.size();
+      if (packet_.all_miss(child.sides(), first)) return packet_.size();
     }
     for (uint32_t i = first + 1; i < packet_.size(); ++i) {
       counts_.count_boxes(1);
@@ -221,7 +222,7 @@ class PacketWalk {
         is_closer |= test_primitive(tracer_.geometries, tracer_.layout.slots[slot], ray.prepared, ray.best, counts_);
       }
     }
-    if (is_closer) packet_.find_limit();
+    if (is_closer) packet_.find_limits();
   }
 
   const Bvh2Tracer& tracer_;
