@@ -37,12 +37,23 @@ Hit BihTracer::trace(const Ray& ray, Counts& counts) const {
     current.exit = t < current.exit ? t : current.exit;
     near_side[a] = prepared.direction_d[a] < 0 ? 1 : 0;
   }
-  Waiting stack[kMaxDepth];  // one child waits for each level above the current one
+  Waiting stack[kMaxDepth];  // one child waits for each pair above the current node
   uint32_t waiting = 0;
   while (true) {
     counts.count_nodes(1);
     const BihNode& node = bih.nodes[current.node];
-    if (!node.is_leaf()) {
+    if (node.is_single()) {
+      counts.count_boxes(1);
+      const uint32_t axis = node.axis(), near = near_side[axis];
+      const float enter = (node.clip(near) - box_ray.origin_near[axis]) * box_ray.inverse[axis];
+      const float leave = (node.clip(1 - near) - box_ray.origin_far[axis]) * box_ray.inverse[axis];
+      current.entry = enter > current.entry ? enter : current.entry;
+      current.exit = leave < current.exit ? leave : current.exit;
+      if (current.entry <= current.exit && current.entry <= best.t) {
+        current.node = node.child();
+        continue;
+      }
+    } else if (!node.is_leaf()) {
       counts.count_boxes(2);
       const uint32_t axis = node.axis(), near = near_side[axis];
       const float leave_near = (node.clip(near) - box_ray.origin_far[axis]) * box_ray.inverse[axis];

@@ -45,12 +45,14 @@ class Check {
       const std::string fault = visit_leaf(node, box);
       return fault.empty() ? fault : name + fault;
     }
-    if (node.axis() > kZ) return name + " has no axis";
-    if (node.child() <= number || node.child() + size_t{1} >= bih_.nodes.size())
+    if (node.child() <= number || node.child() + size_t{node.children()} > bih_.nodes.size()) {
       return name + " has children elsewhere";
+    }
     for (uint32_t side = 0; side < 2; ++side) {
       const float clip = node.clip(side);
       if (!(box.lower[node.axis()] <= clip && clip <= box.upper[node.axis()])) return name + " has a plane outside it";
+    }
+    for (uint32_t side = 0; side < node.children(); ++side) {
       std::string fault = visit(node.child() + side, clipped_by(node, box, side), depth + 1);
       if (!fault.empty()) return fault;
     }

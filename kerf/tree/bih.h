@@ -11,21 +11,28 @@ namespace kerf {
 
 /// One node of a bounding interval hierarchy. 12 bytes.
 struct BihNode {
-  static constexpr uint32_t kLeaf = 3;
+  static constexpr uint32_t kLeaf = 3, kSingle = 4, kLinkShift = 3;
+  static constexpr size_t kMostNodes = size_t{1} << (32 - kLinkShift);
 
-  uint32_t link = kLeaf;  ///< inner node: the number of its pair of children, times 4, plus its axis; leaf: kLeaf
+  uint32_t link = kLeaf;  ///< its first child, shifted; kSingle if that is the only one; its axis, or kLeaf
   uint32_t words[2];      ///< inner node: the bits of its two clip planes; leaf: its first slot and its number of slots
 
-  static BihNode inner(uint32_t pair, uint32_t axis, float left_end, float right_begin) {
-    return {pair << 2 | axis, {std::bit_cast<uint32_t>(left_end), std::bit_cast<uint32_t>(right_begin)}};
+  static BihNode pair(uint32_t child, uint32_t axis, float left_end, float right_begin) {
+    return {child << kLinkShift | axis, {std::bit_cast<uint32_t>(left_end), std::bit_cast<uint32_t>(right_begin)}};
+  }
+  static BihNode single(uint32_t child, uint32_t axis, float begin, float end) {
+    return {child << kLinkShift | kSingle | axis, {std::bit_cast<uint32_t>(begin), std::bit_cast<uint32_t>(end)}};
   }
   static BihNode leaf(uint32_t first, uint32_t count) { return {kLeaf, {first, count}}; }
 
-  bool is_leaf() const { return link == kLeaf; }
+  bool is_leaf() const { return (link & 3) == kLeaf; }
+  bool is_single() const { return (link & kSingle) != 0; }
   uint32_t axis() const { return link & 3; }
-  /// The left child; the right one stands after it.
-  uint32_t child() const { return (link >> 2) * 2 + 1; }
-  /// Where the left child (0) ends and where the right child (1) begins along the axis.
+  /// The only child or the left one; the right one stands after it.
+  uint32_t child() const { return link >> kLinkShift; }
+  uint32_t children() const { return is_leaf() ? 0 : is_single() ? 1 : 2; }
+  /// Of a pair: where the left child (0) ends and where the right child (1) begins along the axis; of a single child:
+  /// where it begins (0) and where it ends (1).
   float clip(uint32_t side) const { return std::bit_cast<float>(words[side]); }
   uint32_t first() const { return words[0]; }
   uint32_t count() const { return words[1]; }
@@ -34,9 +41,9 @@ struct BihNode {
 static_assert(sizeof(BihNode) == 12);
 
 /// A bounding interval hierarchy as plain data (Waechter, Keller: Instant Ray Tracing: The Bounding Interval Hierarchy,
-/// 2006): a node stores where its children end along one axis, no boxes, and the children may overlap. Node 0 is the
-/// root; no nodes: there is nothing to hit. Children come after their parent, in pairs (1, 2), (3, 4), ... Owns no
-/// geometry.
+/// 2006): no boxes, a node stores where its two children end along one axis, and they may overlap. Ours may also store
+/// where an only child begins and ends, which cuts off empty space that pairs leave in along the other axes. Node 0 is
+/// the root; no nodes: there is nothing to hit. Children come after their parent. Owns no geometry.
 struct Bih {
   Box3f bounds;
   std::vector<BihNode> nodes;
@@ -46,9 +53,15 @@ struct Bih {
   size_t bytes() const { return nodes.size() * sizeof(BihNode) + slots.size() * sizeof(LeafSlot); }
 };
 
-/// What is left of a node's box for its left child (0) or its right child (1).
+/// What a node leaves of its box for its left or only child (0), or for its right child (1).
 inline Box3f clipped_by(const BihNode& node, Box3f box, uint32_t side) {
-  (side == 0 ? box.upper : box.lower)[node.axis()] = node.clip(side);
+  const uint32_t axis = node.axis();
+  if (node.is_single()) {
+    box.lower[axis] = node.clip(0);
+    box.upper[axis] = node.clip(1);
+  } else {
+    (side == 0 ? box.upper : box.lower)[axis] = node.clip(side);
+  }
   return box;
 }
 

@@ -1,6 +1,9 @@
 #pragma once
 
 #include "kerf/build/bsp_sah.h"
+#include <algorithm>
+#include <array>
+
 #include "kerf/build/top_down.h"
 #include "kerf/scene/structure.h"
 
@@ -119,11 +122,19 @@ inline constexpr StructureEntry kQuadtreeStructure = {
     build_quadtree_structure};
 
 std::unique_ptr<const Structure> build_bih_structure(StructureInput input, const OptionValues& options);
+inline constexpr auto kBihOptions = [] {
+  constexpr size_t kShared = std::size(TopDownOptions::kSpecs);
+  std::array<OptionSpec, kShared + 1> specs{};
+  std::copy_n(TopDownOptions::kSpecs, kShared, specs.begin());
+  specs[kShared] = {"cut_off", "share of its area left for children below which a node cuts off empty space; 0: never",
+                    0.8, 0, 1};
+  return specs;
+}();
 inline constexpr StructureEntry kBihStructure = {
     "bih",
     "a bounding interval hierarchy: planes where two children end along one axis, at the middles of a regular grid",
     "Waechter, Keller: Instant Ray Tracing: The Bounding Interval Hierarchy, 2006",
-    TopDownOptions::kSpecs,
+    kBihOptions,
     true,
     build_bih_structure};
 std::unique_ptr<const Structure> build_kd_sah(StructureInput input, const OptionValues& options);

@@ -34,7 +34,7 @@ class BihStructure : public Structure {
     const std::span<const LeafSlot> slots = tracer_.bih.slots;
     visit({box, depth, node.is_leaf(), node.is_leaf() ? slots.subspan(node.first(), node.count()) : slots.first(0)});
     if (node.is_leaf()) return;
-    for (uint32_t side = 0; side < 2; ++side) {
+    for (uint32_t side = 0; side < node.children(); ++side) {
       visit_node(node.child() + side, clipped_by(node, box, side), depth + 1, visit);
     }
   }
@@ -46,7 +46,8 @@ class BihStructure : public Structure {
 }  // namespace
 
 std::unique_ptr<const Structure> build_bih_structure(StructureInput input, const OptionValues& options) {
-  Bih bih = build_bih(std::exchange(input.references, {}), TopDownOptions::from(options), input.limit);
+  Bih bih =
+      build_bih(std::exchange(input.references, {}), TopDownOptions::from(options), options["cut_off"], input.limit);
   if (input.is_split) mark_repeated(bih.slots, input.geometries);
   return std::make_unique<const BihStructure>(std::move(bih), input);
 }
