@@ -17,7 +17,9 @@ namespace {
 
 constexpr size_t kParallelCount = 2048;  // cells of fewer references are built by one task
 constexpr size_t kSampledCount = 64;     // cells of fewer references are swept: sampling would cost more
-constexpr size_t kCheckCount = 256;      // the limit is looked at for cells of so many references
+constexpr size_t kTrialCount = 16;       // fewer references are tested sooner than a trial pays
+constexpr double kTrialShare = 0.75;  // of a leaf's cost that a trial's subtree may have, or references grow for little
+constexpr size_t kCheckCount = 256;   // the limit is looked at for cells of so many references
 
 /// What one task has made: a piece of the tree, or a plane with a part on either side.
 struct Part {
@@ -39,47 +41,76 @@ class Builder {
       count(part.nodes.size() * sizeof(KdNode) + part.slots.size() * sizeof(LeafSlot));
       return;
     }
-    std::optional<KdHalves> halves = divided(cell, part);
-    if (!halves) {
-      append_leaf(cell, part);
+    std::optional<Division> division = divided(cell, part, false);
+    if (!division) {
+      append_leaf(slots_of(cell), part);
       return;
     }
     cell = {};
+    part.plane = division->plane;
     part.below = std::make_unique<Part>();
     part.above = std::make_unique<Part>();
-    parallel_invoke([&] { build(std::move(halves->below), *part.below); },
-                    [&] { build(std::move(halves->above), *part.above); });
+    parallel_invoke([&] { build(std::move(division->halves.below), *part.below); },
+                    [&] { build(std::move(division->halves.above), *part.above); });
   }
 
  private:
-  /// The subtree of a cell, nodes and slots appended to the part.
-  void build_piece(KdCell cell, Part& part) {
-    std::optional<KdHalves> halves = divided(cell, part);
-    if (!halves) {
-      append_leaf(cell, part);
-      return;
-    }
+  /// `is_trial`: no plane pays by itself, but what comes below may. Where primitives lie aslant, as in turned
+  /// buildings, halves leave empty space that the next planes cut off.
+  struct Division {
+    KdPlane plane;
+    KdHalves halves;
+    bool is_trial;
+  };
+
+  /// Appends the subtree of a cell to the part; what a ray through the cell costs.
+  double build_piece(KdCell cell, Part& part) {
+    std::optional<Division> division = divided(cell, part, options_.tries && !cell.is_of_trial);
+    if (!division) return append_leaf(slots_of(cell), part);
+    std::vector<LeafSlot> slots;
+    if (division->is_trial) slots = slots_of(cell);
+    const double area = half_area(cell.bounds);
+    const double below_share = half_area(division->halves.below.bounds) / area;
+    const double above_share = half_area(division->halves.above.bounds) / area;
     cell = {};
-    const KdPlane plane = part.plane;
-    const size_t number = part.nodes.size();
+    const size_t number = part.nodes.size(), first_slot = part.slots.size();
     part.nodes.emplace_back();
-    build_piece(std::move(halves->below), part);
-    check_number(part.nodes.size());
+    double cost = options_.costs.traversal;
+    cost += below_share * build_piece(std::move(division->halves.below), part);
+    const KdPlane& plane = division->plane;
     part.nodes[number] = KdNode::inner(plane.axis, plane.position, static_cast<uint32_t>(part.nodes.size()));
-    build_piece(std::move(halves->above), part);
+    cost += above_share * build_piece(std::move(division->halves.above), part);
+    if (!division->is_trial || cost < kTrialShare * options_.costs.leaf(slots.size())) return cost;
+    part.nodes.resize(number);
+    part.slots.resize(first_slot);
+    return append_leaf(slots, part);
   }
 
-  /// Nothing if the cell shall be a leaf. Leaves the plane in the part.
-  std::optional<KdHalves> divided(KdCell& cell, Part& part) {
+  /// Nothing if the cell shall be a leaf.
+  std::optional<Division> divided(KdCell& cell, Part& part, bool may_try) {
     const size_t count = cell.references.size();
     if (count <= options_.leaf_size || cell.depth == max_depth_) return std::nullopt;
     if (count >= kCheckCount) limit_.check();
-    part.plane = find_plane(cell, part);
-    if (!(part.plane.cost < options_.costs.leaf(count))) return std::nullopt;
-    std::optional<KdHalves> halves = divide(cell, part.plane, clipper_);
-    part.work.cuts += halves->cuts;
-    if (halves->below.references.size() + halves->above.references.size() > cell.allowed) return std::nullopt;
-    return halves;
+    Division division{find_plane(cell, part), {}, false};
+    if (!(division.plane.cost < options_.costs.leaf(count))) {
+      division.is_trial = true;
+      division.plane = middle_plane(cell.bounds);
+      if (!may_try || count < kTrialCount || std::isinf(division.plane.cost)) return std::nullopt;
+    }
+    division.halves = divide(cell, division.plane, clipper_);
+    KdCell &below = division.halves.below, &above = division.halves.above;
+    part.work.cuts += division.halves.cuts;
+    if (below.references.size() + above.references.size() > cell.allowed) return std::nullopt;
+    below.is_of_trial = above.is_of_trial = division.is_trial;
+    return division;
+  }
+
+  /// Through the centre of a cell, across its longest side.
+  static KdPlane middle_plane(const Box3f& cell) {
+    const uint32_t axis = largest_axis(cell.extent());
+    const float middle = center(cell, axis);
+    if (!(cell.lower[axis] < middle && middle < cell.upper[axis])) return {};
+    return {0, axis, middle, true};
   }
 
   KdPlane find_plane(KdCell& cell, Part& part) {
@@ -96,11 +127,18 @@ class Builder {
     return cheapest_plane(cell.events, count, cell.bounds, options_.costs);
   }
 
-  static void append_leaf(const KdCell& cell, Part& part) {
-    part.nodes.push_back(
-        KdNode::leaf(static_cast<uint32_t>(part.slots.size()), static_cast<uint32_t>(cell.references.size())));
-    for (const Reference& r : cell.references) part.slots.push_back({r.geometry, r.primitive});
-    check_number(part.slots.size());
+  static std::vector<LeafSlot> slots_of(const KdCell& cell) {
+    std::vector<LeafSlot> slots;
+    slots.reserve(cell.references.size());
+    for (const Reference& r : cell.references) slots.push_back({r.geometry, r.primitive});
+    return slots;
+  }
+
+  double append_leaf(const std::vector<LeafSlot>& slots, Part& part) {
+    part.nodes.push_back(KdNode::leaf(static_cast<uint32_t>(part.slots.size()), static_cast<uint32_t>(slots.size())));
+    part.slots.insert(part.slots.end(), slots.begin(), slots.end());
+    check_number(std::max(part.slots.size(), part.nodes.size()));
+    return options_.costs.leaf(slots.size());
   }
 
   static void check_number(size_t number) {

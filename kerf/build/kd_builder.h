@@ -13,6 +13,7 @@ namespace kerf {
 /// How a kd-tree is built.
 struct KdOptions {
   bool is_sampled = false;  ///< planes by counting at samples; else at every event
+  bool tries = true;        ///< halve cells that no plane improves, and keep that where the subtree pays
   bool clips = true;        ///< cut primitives at planes (Algorithm 3); else their boxes (Algorithm 1)
   KdCosts costs;
   uint32_t leaf_size = 1;  ///< so many references are not divided further

@@ -15,6 +15,7 @@ struct KdCell {
   bool has_events = false;
   uint64_t allowed = 0;  ///< references that the leaves below may have, all together
   uint32_t depth = 0;
+  bool is_of_trial = false;  ///< made by a division that does not pay by itself
 };
 
 struct KdHalves {

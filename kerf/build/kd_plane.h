@@ -18,7 +18,7 @@ struct KdPlane {
 struct KdCosts {
   double traversal = 1;
   double primitive = 1;
-  double empty_bonus = 0.2;
+  double empty_bonus = 0.1;
 
   double leaf(size_t references) const { return primitive * static_cast<double>(references); }
 };

@@ -143,11 +143,12 @@ inline constexpr OptionSpec kKdOptions[] = {
     {"build", "planes at every side of a box, or at samples of their positions", 0, kKdBuilds},
     {"samples", "with build=sampled: positions along an axis in each of two passes", 16, 1, 64, true},
     {"clip", "whether primitives are cut at planes; else their boxes are", 1, kOffOn},
-    {"empty_bonus", "share of its cost that a plane is let off for cutting off empty space", 0.2, 0, 1},
+    {"empty_bonus", "share of its cost that a plane is let off for cutting off empty space", 0.1, 0, 1},
     {"traversal_cost", "cost of visiting a node", 1, 0, 1e30},
     {"primitive_cost", "cost of testing a primitive", 1, 0, 1e30, false, true},
     {"leaf", "cells of so many references are not divided further", 1, 1, 255, true},
     {"depth", "depth of the tree, at most; 0: 8 + 1.3 log2 of the number of primitives", 0, 0, kMaxDepth, true},
+    {"trial", "whether a cell that no plane improves is halved, and stays so if its subtree pays", 1, kOffOn},
     {"cap", "references for each primitive, at most", 32, 1},
     {"mailbox", "whether a ray remembers the last primitives it tested", 0, kOffOn},
 };

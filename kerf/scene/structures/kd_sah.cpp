@@ -45,6 +45,7 @@ std::unique_ptr<const Structure> build_kd_sah(StructureInput input, const Option
   options.costs = {values["traversal_cost"], values["primitive_cost"], values["empty_bonus"]};
   options.leaf_size = static_cast<uint32_t>(values["leaf"]);
   options.max_depth = static_cast<uint32_t>(values["depth"]);
+  options.tries = values.is_on("trial");
   options.cap = values["cap"];
   options.samples = static_cast<uint32_t>(values["samples"]);
   KdTree tree = build_kd_tree(std::move(input.references), geometry_clipper(input.geometries), options, input.limit);
