@@ -12,9 +12,9 @@ function(kerf_install target set)
   install(EXPORT ${set} NAMESPACE kerf:: DESTINATION ${KERF_CMAKE_DIR})
   foreach(folder ${ARGN})
     # simd.h is for the library's own kernels: it needs Highway's headers, which users of Kerf need not have.
-    # The folders within kerf/io are the insides of its readers.
+    # The folders within kerf/io are the insides of its readers, kerf/study/report those of the page.
     install(DIRECTORY kerf/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kerf FILES_MATCHING PATTERN "*.h"
-      PATTERN simd.h EXCLUDE REGEX "kerf/io/[a-z]+$" EXCLUDE)
+      PATTERN simd.h EXCLUDE REGEX "kerf/(io/[a-z]+|study/report)$" EXCLUDE)
   endforeach()
 endfunction()
 
@@ -26,7 +26,7 @@ endif()
 kerf_install(kerf kerf-targets base geometry references tree build layout trace choose scene)
 install(FILES ${CMAKE_BINARY_DIR}/include/kerf/base/version.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kerf/base)
 if(TARGET kerf-render)
-  kerf_install(kerf-render kerf-render-targets io render)
+  kerf_install(kerf-render kerf-render-targets io render study)
 endif()
 if(TARGET kerf_cli)
   file(RELATIVE_PATH to_libraries /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})

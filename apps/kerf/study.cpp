@@ -18,6 +18,7 @@
 #include "kerf/study/camera_list.h"
 #include "kerf/study/models/models.h"
 #include "kerf/study/paper.h"
+#include "kerf/study/study_pictures.h"
 #include "kerf/study/tables.h"
 #include "kerf/study/turn.h"
 
@@ -163,7 +164,11 @@ class Session {
     options_.rows.clear();
     for (const PaperStudyRow& row : rows) options_.rows.push_back(row.pipeline);
     load_or_save(scene);
-    for (StudyResult& result : study(scene, options_)) {
+    std::vector<StudyResult> found = study(scene, options_);
+    if (!a_.html.empty() && a_.growth.empty() && !interrupted()) {
+      for (ReportPicture& picture : study_pictures(scene, found, options_)) pictures.push_back(std::move(picture));
+    }
+    for (StudyResult& result : found) {
       for (const PaperStudyRow& row : rows) {
         if (row.paper && parse_pipeline(row.pipeline).text() == result.row && result.rays == "primary") {
           result.paper = row.paper;
@@ -175,6 +180,7 @@ class Session {
   }
 
   std::vector<StudyResult> results;
+  std::vector<ReportPicture> pictures;
   std::vector<std::string> notes;
 
  private:
@@ -246,6 +252,7 @@ void write(const Arguments& a, Session& session, const std::string& command_line
     report.command = command_line;
     report.machine = machine_line();
     report.notes = session.notes;
+    report.pictures = std::move(session.pictures);
     (!a.sweep.empty() ? report.sweep : !a.growth.empty() ? report.growth : report.results) = results;
     write_text(a.html, html_report(report));
   }
