@@ -21,22 +21,21 @@ struct TraceCounts {
   PrimitiveTally* tests = nullptr;  ///< where given: the primitive tests of each primitive, added up
 
   void count_nodes(uint64_t n) { nodes += n; }
+  /// Tests of primitives that are not named: `tests` then adds up to less than `primitives`.
+  void count_primitives(uint64_t n) { primitives += n; }
   void count_primitives(std::span<const LeafSlot> tested) {
     primitives += tested.size();
     if (tests == nullptr) return;
     for (const LeafSlot& slot : tested) ++(*tests)[slot.geometry()][slot.primitive];
   }
   void count_boxes(uint64_t n) { boxes += n; }
-
-  /// Tests that nobody can ask about one by one: `tests` then adds up to less than `primitives`.
-  void count_primitives(uint64_t n) { primitives += n; }
 };
 
 /// Stands where counts are not wanted, and costs nothing.
 struct NoCounts {
   void count_nodes(uint64_t) {}
-  void count_primitives(std::span<const LeafSlot>) {}
   void count_primitives(uint64_t) {}
+  void count_primitives(std::span<const LeafSlot>) {}
   void count_boxes(uint64_t) {}
 };
 
