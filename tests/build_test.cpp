@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <stdexcept>
 #include <string>
 
 #include "kerf/base/error.h"
@@ -149,6 +150,103 @@ TEST(Builders, MoreCandidatesGiveCheaperTrees) {
   EXPECT_LE(coarse, cost("spatial_median") * 1.01);
   EXPECT_LE(coarse, cost("object_median") * 1.01);
   EXPECT_EQ(cost("binned_sah", {{"planes", 8}}), cost("binned_sah", {{"bins", 9}}));
+}
+
+const BuilderEntry& builder_named(std::string_view name) {
+  for (const BuilderEntry& builder : builders()) {
+    if (builder.name == name) return builder;
+  }
+  throw std::logic_error(std::string(name));
+}
+
+TEST(Builders, SeedsAndCandidatesOfRandomPlanes) {
+  const RandomTriangles scene(5000);
+  const Geometry geometry = scene.geometry();
+  const BuilderEntry& builder = builder_named("random_top_down");
+  const auto build = [&](double seed, double candidates) {
+    return builder.build(references_of({&geometry, 1}, false),
+                         options_of(builder, {{"seed", seed}, {"candidates", candidates}}));
+  };
+  EXPECT_EQ(tree_hash(build(1, 16)), tree_hash(build(1, 16)));
+  EXPECT_NE(tree_hash(build(1, 16)), tree_hash(build(2, 16)));
+  EXPECT_LT(sah_cost(build(1, 16)), sah_cost(build(1, 1)));
+  EXPECT_LT(sah_cost(build(1, 128)), sah_cost(build(1, 4)));
+}
+
+TEST(Builders, InsertionBySeedOrderAndSearch) {
+  const RandomTriangles scene(5000);
+  const Geometry geometry = scene.geometry();
+  const BuilderEntry& builder = builder_named("insertion");
+  const auto build = [&](double search, double order, double seed) {
+    return builder.build(references_of({&geometry, 1}, false),
+                         options_of(builder, {{"search", search}, {"order", order}, {"seed", seed}}));
+  };
+  EXPECT_NE(tree_hash(build(1, 1, 1)), tree_hash(build(1, 1, 2)));
+  EXPECT_EQ(tree_hash(build(1, 0, 1)), tree_hash(build(1, 0, 2)));  // the order given needs no seed
+  EXPECT_LT(sah_cost(build(1, 1, 1)), 0.8 * sah_cost(build(0, 1, 1)));
+}
+
+TEST(Builders, InsertionOfBoxesInARowStaysShallow) {
+  // Each next to the last: the given order is the worst, the way down gets long.
+  std::vector<Reference> row(20000);
+  for (uint32_t i = 0; i < row.size(); ++i) {
+    const auto x = static_cast<float>(i);
+    row[i] = {{x, 0, 0}, 0, {x + 0.5F, 1, 1}, i};
+  }
+  const BuilderEntry& builder = builder_named("insertion");
+  for (const double search : {0, 1}) {
+    for (const double order : {0, 1}) {
+      const Bvh bvh = builder.build(row, options_of(builder, {{"search", search}, {"order", order}}));
+      EXPECT_EQ(bvh.slots.size(), row.size());
+      EXPECT_LE(measure(bvh).depth, kMaxDepth);
+    }
+  }
+}
+
+TEST(Builders, OversizeReferencesStayOnShelves) {
+  // Twenty boxes as large as the scene among a thousand small ones.
+  std::vector<Reference> references(1020);
+  for (uint32_t i = 0; i < references.size(); ++i) {
+    const Vec3f at{static_cast<float>(i % 10), static_cast<float>(i / 10 % 10), static_cast<float>(i / 100)};
+    references[i] = {at, 0, at + Vec3f{0.5F, 0.5F, 0.5F}, i};
+    if (i >= 1000) references[i] = {{0, 0, 0}, 0, {10, 10, 10 - 0.01F * at.x}, i};
+  }
+  const auto mixed_leaves = [&](const BuilderEntry& builder) {
+    const Bvh bvh = builder.build(references, options_of(builder));
+    size_t mixed = 0;
+    for (const BvhNode& node : bvh.nodes) {
+      size_t large = 0;
+      for (uint32_t s = node.first; s < node.first + node.count; ++s) large += bvh.slots[s].primitive >= 1000 ? 1 : 0;
+      mixed += large > 0 && large < node.count ? 1 : 0;
+    }
+    return mixed;
+  };
+  const BuilderEntry& shelves = builder_named("oversize_shelves");
+  EXPECT_EQ(mixed_leaves(shelves), 0U);
+  // Right below the root stand a shelf of twenty in five leaves and the thousand.
+  const Bvh bvh = shelves.build(references, options_of(shelves));
+  const BvhNode &rest = bvh.nodes[1], &shelf = bvh.nodes[2];
+  EXPECT_LE(rest.upper.z, 9.5F + 1);
+  EXPECT_EQ(shelf.upper.z, 10);
+  EXPECT_EQ(shelf.lower, (Vec3f{0, 0, 0}));
+}
+
+TEST(Builders, TheChildWithMoreReferencesIsFirst) {
+  const RandomTriangles scene(2000);
+  const Geometry geometry = scene.geometry();
+  for (const BuilderEntry& builder : builders()) {
+    const Bvh bvh = builder.build(references_of({&geometry, 1}, false), options_of(builder));
+    std::vector<uint32_t> count(bvh.nodes.size());
+    for (size_t i = bvh.nodes.size(); i-- > 0;) {
+      const BvhNode& node = bvh.nodes[i];
+      if (node.is_leaf()) {
+        count[i] = node.count;
+        continue;
+      }
+      count[i] = count[node.first] + count[node.first + 1];
+      ASSERT_GE(count[node.first], count[node.first + 1]) << builder.name;
+    }
+  }
 }
 
 TEST(Tree, FaultsAreFound) {

@@ -53,12 +53,12 @@ Soup random_soup(size_t count, uint64_t seed) {
   return soup;
 }
 
-EarlySplitResult split(const Geometry& geometry, const EarlySplit& options) {
+SplitResult split(const Geometry& geometry, const EarlySplit& options) {
   const std::span<const Geometry> geometries(&geometry, 1);
   return early_split(make_references(geometries).references, geometry_clipper(geometries), options);
 }
 
-EarlySplitResult split(const Soup& soup, const EarlySplit& options) { return split(Geometry{soup.mesh()}, options); }
+SplitResult split(const Soup& soup, const EarlySplit& options) { return split(Geometry{soup.mesh()}, options); }
 
 /// Whether a box could be cut in the middle of its longest side.
 bool can_be_cut(const Box3f& box) {
@@ -73,10 +73,10 @@ bool same_bytes(const std::vector<Reference>& a, const std::vector<Reference>& b
 
 TEST(EarlySplit, InfiniteSaMaxGivesThePlainList) {
   const Soup soup = random_soup(3000, 1);
-  const EarlySplitResult result = split(soup, {});
+  const SplitResult result = split(soup, {});
   const Geometry geometry{soup.mesh()};
   EXPECT_EQ(result.references, make_references({&geometry, 1}).references);
-  EXPECT_EQ(result.sa_max, kInfinity);
+  EXPECT_EQ(result.limit, kInfinity);
   EXPECT_FALSE(result.capped);
 }
 
@@ -94,7 +94,7 @@ TEST(EarlySplit, RefusesWhatCannotBeMeant) {
 TEST(EarlySplit, NothingToSplitIsNoTrouble) {
   const Soup empty;
   for (const double cap : {1.0, 16.0, kInfinity}) {
-    const EarlySplitResult result = split(empty, {.sa_max = 1, .cap = cap});
+    const SplitResult result = split(empty, {.sa_max = 1, .cap = cap});
     EXPECT_TRUE(result.references.empty());
     EXPECT_FALSE(result.capped);
   }
@@ -103,8 +103,8 @@ TEST(EarlySplit, NothingToSplitIsNoTrouble) {
 TEST(EarlySplit, NoReferenceIsLargerThanAllowedAndTheCallersNumbersStay) {
   const Soup soup = random_soup(2000, 2);
   for (const double sa_max : {300.0, 10.0, 1.0}) {
-    const EarlySplitResult result = split(soup, {.sa_max = sa_max, .cap = kInfinity});
-    EXPECT_EQ(result.sa_max, sa_max);
+    const SplitResult result = split(soup, {.sa_max = sa_max, .cap = kInfinity});
+    EXPECT_EQ(result.limit, sa_max);
     EXPECT_FALSE(result.capped);
     std::vector<uint32_t> seen;
     for (const Reference& r : result.references) {
@@ -164,13 +164,13 @@ void split_by_the_paper(std::span<const Vec3d> corners, const Box3f& box, double
 TEST(EarlySplit, IsThePapersAlgorithm4OnTheOriginalAlsoUnderACap) {
   const Soup soup = random_soup(300, 3);
   for (const EarlySplit& options : {EarlySplit{1, 1e9}, EarlySplit{0.1, 1e9}, EarlySplit{0.1, 3}}) {
-    const EarlySplitResult result = split(soup, options);
+    const SplitResult result = split(soup, options);
     std::vector<Box3f> boxes, expected;
     for (const Reference& r : result.references) boxes.push_back(r.bounds());
     for (uint32_t i = 0; i < soup.triangles.size(); ++i) {
       const Triangle t = soup.triangle(i);
       const std::array<Vec3d, 3> corners{to_double(t.a), to_double(t.b), to_double(t.c)};
-      split_by_the_paper(corners, primitive_bounds(Geometry{soup.mesh()}, i), result.sa_max, expected);
+      split_by_the_paper(corners, primitive_bounds(Geometry{soup.mesh()}, i), result.limit, expected);
     }
     EXPECT_EQ(boxes, expected);
   }
@@ -185,15 +185,15 @@ TEST(EarlySplit, EndsOnWhateverItIsGiven) {
   soup.add({{1e-42F, 0, 0}, {0, 1e-42F, 0}, {0, 0, 1e-45F}});                              // denormal
   for (const double sa_max : {1e-30, 1e-300, std::numeric_limits<double>::denorm_min()}) {
     for (const double cap : {1.0, 50.0, 1000.0}) {
-      const EarlySplitResult result = split(soup, {.sa_max = sa_max, .cap = cap});
+      const SplitResult result = split(soup, {.sa_max = sa_max, .cap = cap});
       EXPECT_LE(result.references.size(), static_cast<size_t>(4 * cap));
       EXPECT_TRUE(result.capped);
-      EXPECT_GE(result.sa_max, sa_max);
+      EXPECT_GE(result.limit, sa_max);
     }
   }
   Soup tiny;  // few floats to cut at, so it ends by itself
   tiny.add({{0, 0, 0}, {4e-45F, 0, 0}, {0, 4e-45F, 0}});
-  const EarlySplitResult result = split(tiny, {.sa_max = 1e-300, .cap = 1e6});
+  const SplitResult result = split(tiny, {.sa_max = 1e-300, .cap = 1e6});
   EXPECT_FALSE(result.capped);
   for (const Reference& r : result.references) EXPECT_FALSE(can_be_cut(r.bounds()));
 }
@@ -208,15 +208,15 @@ TEST(EarlySplit, TheCapHoldsAndTheLimitUsedIsTheSmallestThatFits) {
         // steps lead from the largest box down, or none.
         const double cap = 1 + share * (static_cast<double>(wanted) / 1500 - 1);
         const auto most = static_cast<size_t>(std::floor(cap * 1500));
-        const EarlySplitResult result = split(soup, {.sa_max = asked, .cap = cap});
+        const SplitResult result = split(soup, {.sa_max = asked, .cap = cap});
         EXPECT_TRUE(result.capped);
         EXPECT_LE(result.references.size(), most);
-        EXPECT_GT(result.sa_max, asked);
-        EXPECT_TRUE(same_bytes(result.references, split(soup, {.sa_max = result.sa_max, .cap = 1e9}).references));
-        const size_t finer = split(soup, {.sa_max = result.sa_max * 0.999, .cap = 1e9}).references.size();
+        EXPECT_GT(result.limit, asked);
+        EXPECT_TRUE(same_bytes(result.references, split(soup, {.sa_max = result.limit, .cap = 1e9}).references));
+        const size_t finer = split(soup, {.sa_max = result.limit * 0.999, .cap = 1e9}).references.size();
         const bool is_full = static_cast<double>(result.references.size()) >= 0.999 * static_cast<double>(most);
-        EXPECT_TRUE(finer > most || is_full) << "sa_max " << result.sa_max << " for " << asked << ", cap " << cap
-                                             << ": " << result.references.size() << " of " << most;
+        EXPECT_TRUE(finer > most || is_full) << "sa_max " << result.limit << " for " << asked << ", cap " << cap << ": "
+                                             << result.references.size() << " of " << most;
       }
       EXPECT_FALSE(split(soup, {.sa_max = asked, .cap = std::ceil(static_cast<double>(wanted) / 1500)}).capped);
     }
@@ -241,8 +241,8 @@ TEST(EarlySplit, TheOrderOfPrimitivesDoesNotMatter) {
   for (size_t i = from.size() - 1; i > 0; --i) std::swap(from[i], from[random.below(static_cast<uint32_t>(i) + 1)]);
   for (const uint32_t i : from) shuffled.add(soup.triangle(i));
   for (const EarlySplit& options : {EarlySplit{2, 1e9}, EarlySplit{0.01, 3}, EarlySplit::with_budget(1.5)}) {
-    const EarlySplitResult a = split(soup, options), b = split(shuffled, options);
-    EXPECT_EQ(a.sa_max, b.sa_max);
+    const SplitResult a = split(soup, options), b = split(shuffled, options);
+    EXPECT_EQ(a.limit, b.limit);
     std::map<uint32_t, std::vector<Box3f>> pieces_a, pieces_b;
     for (const Reference& r : a.references) pieces_a[r.primitive].push_back(r.bounds());
     for (const Reference& r : b.references) pieces_b[from[r.primitive]].push_back(r.bounds());
@@ -253,12 +253,12 @@ TEST(EarlySplit, TheOrderOfPrimitivesDoesNotMatter) {
 TEST(EarlySplit, TheNumberOfThreadsDoesNotMatter) {
   const Soup soup = random_soup(6000, 10);  // several blocks of work
   for (const EarlySplit& options : {EarlySplit{2, 1e9}, EarlySplit{0.01, 3}, EarlySplit::with_budget(1.2)}) {
-    EarlySplitResult one, many;
+    SplitResult one, many;
     with_threads(1, [&] { one = split(soup, options); });
     for (const int threads : {2, 7}) {
       with_threads(threads, [&] { many = split(soup, options); });
       EXPECT_TRUE(same_bytes(one.references, many.references));
-      EXPECT_EQ(one.sa_max, many.sa_max);
+      EXPECT_EQ(one.limit, many.limit);
       EXPECT_EQ(one.capped, many.capped);
     }
   }
@@ -305,11 +305,13 @@ TEST(EarlySplit, TheMenusBudgetReplacesBothLimits) {
   const PrimitiveReferences whole = make_references(geometries);
   OptionValues options(entry.options);
   options.set("early_split", "budget", 1.5);
-  const EarlySplitResult result = entry.split(whole.references, geometry_clipper(geometries), options);
+  const SplitResult result = entry.split({geometries, whole.references, geometry_clipper(geometries), {}}, options);
   EXPECT_TRUE(same_bytes(result.references, split(soup, EarlySplit::with_budget(1.5)).references));
   EXPECT_FALSE(result.capped) << "no limit was asked for, so none was raised";
   options.set("early_split", "cap", 3);
-  error_of(ErrorCode::invalid_option, [&] { entry.split(whole.references, geometry_clipper(geometries), options); });
+  error_of(ErrorCode::invalid_option, [&] {
+    entry.split({geometries, whole.references, geometry_clipper(geometries), {}}, options);
+  });
 }
 
 TEST(SplitReferences, AreThoseOfTheMesh) {

@@ -5,38 +5,17 @@
 #include "kerf/layout/bvh2.h"
 #include "kerf/trace/brute_force.h"
 #include "kerf/trace/trace_bvh2.h"
+#include "tests/support/hand_tree.h"
 
 namespace kerf {
 namespace {
 
-/// Four triangles across the x axis, at x = 1, 2, 3 and 4, each alone in its leaf:
-///
-///            0 [1,4]
-///       1 [1,2]   2 [3,4]
-///     3 [1]  4 [2]  5 [3]  6 [4]
-///
-/// They cover y + z <= 1 with y, z >= 0; their boxes the whole unit square.
+using test::expect_counts;
+
 class SevenNodes : public testing::Test {
  protected:
-  SevenNodes() {
-    for (uint32_t i = 0; i < 4; ++i) {
-      const float x = static_cast<float>(i) + 1;
-      vertices_.insert(vertices_.end(), {{x, 0, 0}, {x, 1, 0}, {x, 0, 1}});
-      triangles_.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-    }
-    geometry_ = {TriangleMesh{std::span<const Vec3f>(vertices_), std::span<const TriangleCorners>(triangles_)}};
-    Bvh bvh;
-    bvh.nodes = {inner(1, 4, 1), inner(1, 2, 3), inner(3, 4, 5), leaf(0), leaf(1), leaf(2), leaf(3)};
-    for (uint32_t i = 0; i < 4; ++i) bvh.slots.push_back({0, i});
-    EXPECT_EQ(find_fault(bvh, {&geometry_, 1}, 1), std::nullopt);
-    tracer_.layout = make_bvh2(std::move(bvh));
-    tracer_.geometries = {&geometry_, 1};
-  }
-
-  static BvhNode inner(float from, float to, uint32_t first) { return {{from, 0, 0}, first, {to, 1, 1}, 0}; }
-  static BvhNode leaf(uint32_t slot) {
-    const float x = static_cast<float>(slot) + 1;
-    return {{x, 0, 0}, slot, {x, 1, 1}, 1};
+  SevenNodes() : tracer_{make_bvh2(test::SevenNodes::bvh()), hand_.scene.geometries()} {
+    EXPECT_EQ(find_fault(make_bvh(tracer_.layout), tracer_.geometries, 1), std::nullopt);
   }
 
   struct Outcome {
@@ -50,17 +29,9 @@ class SevenNodes : public testing::Test {
     return outcome;
   }
 
-  std::vector<Vec3f> vertices_;
-  std::vector<TriangleCorners> triangles_;
-  Geometry geometry_;
+  test::SevenNodes hand_;
   Bvh2Tracer tracer_;
 };
-
-void expect_counts(const TraceCounts& counts, uint64_t nodes, uint64_t primitives, uint64_t boxes) {
-  EXPECT_EQ(counts.nodes, nodes);
-  EXPECT_EQ(counts.primitives, primitives);
-  EXPECT_EQ(counts.boxes, boxes);
-}
 
 TEST_F(SevenNodes, NearChildFirstAndChildrenBehindTheHitAreSkipped) {
   const auto [hit, counts] = closest({.origin = {0, 0.25F, 0.25F}, .direction = {1, 0, 0}});
@@ -121,7 +92,7 @@ TEST_F(SevenNodes, ParallelToTheTrianglesAndOnTheirPlanesNothingIsHitOrLost) {
 
 TEST_F(SevenNodes, BruteForceCountsEveryPrimitive) {
   const std::vector<LeafSlot> slots{{0, 0}, {0, 1}, {0, 2}, {0, 3}};
-  const BruteForce brute({&geometry_, 1}, slots);
+  const BruteForce brute(hand_.scene.geometries(), slots);
   TraceCounts counts;
   const Hit hit =
       brute_force_table().closest_counted(&brute, {.origin = {0, 0.25F, 0.25F}, .direction = {1, 0, 0}}, counts);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,9 +13,13 @@ inline constexpr int kDone = 0, kBadInput = 1, kUsage = 2, kInterrupted = 130;
 
 /// Adds one subcommand each; what it does is put into `run`, which returns the exit code.
 void add_render(CLI::App& app, std::function<int()>& run);
+void add_figure(CLI::App& app, std::function<int()>& run);
 void add_check(CLI::App& app, std::function<int()>& run);
 void add_inspect(CLI::App& app, std::function<int()>& run);
 void add_list(CLI::App& app, std::function<int()>& run);
+void add_study(CLI::App& app, std::function<int()>& run);
+void add_make(CLI::App& app, std::function<int()>& run);
+void add_convert(CLI::App& app, std::function<int()>& run);
 
 /// The view that is not one of rays' hits.
 inline constexpr std::string_view kBeauty = "beauty";
@@ -31,5 +36,7 @@ void watch_interrupts();
 /// From now on interrupts are passed over: files are written to their end.
 void ignore_interrupts();
 bool interrupted();
+/// The same for what looks at it by itself.
+const std::atomic<bool>* interrupt_flag();
 
 }  // namespace kerf::app

@@ -10,6 +10,7 @@
 #include "kerf/io/model.h"
 #include "kerf/render/views.h"
 #include "kerf/scene/menu.h"
+#include "kerf/study/models/models.h"
 
 namespace kerf::app {
 namespace {
@@ -50,6 +51,7 @@ nlohmann::ordered_json menu_json() {
   add("view", kBeauty, kBeautySentence);
   for (const ViewEntry& view : views()) add("view", view.name, view.sentence);
   for (const MaterialTypeEntry& type : material_types()) add("material", type.name, type.sentence);
+  for (const ModelEntry& model : made_models()) add("model", model.name, model.sentence);
   for (const std::string& extension : model_extensions()) add("format", extension, "a model that can be read");
   return all;
 }
@@ -72,6 +74,8 @@ void print_menu() {
   for (const ViewEntry& view : views()) fmt::print("  {:<16}{}\n", view.name, view.sentence);
   fmt::print("\nmaterials of YAML scenes\n");
   for (const MaterialTypeEntry& type : material_types()) fmt::print("  {:<16}{}\n", type.name, type.sentence);
+  fmt::print("\nmodels that kerf make makes\n");
+  for (const ModelEntry& model : made_models()) fmt::print("  {:<16}{}\n", model.name, model.sentence);
   fmt::print("\nmodels that can be read\n ");
   size_t column = 2;
   for (const std::string& extension : model_extensions()) {
@@ -88,8 +92,8 @@ void print_menu() {
 }  // namespace
 
 void add_list(CLI::App& app, std::function<int()>& run) {
-  CLI::App* command =
-      app.add_subcommand("list", "Prints all splitters, builders, structures, views, materials and model formats.");
+  CLI::App* command = app.add_subcommand(
+      "list", "Prints all splitters, builders, structures, views, materials, models and their formats.");
   command->footer("Example: kerf list --json -");
   auto json = std::make_shared<std::string>();
   command->add_option("--json", *json, "Write the menu to this file as JSON; '-' is standard output");

@@ -16,16 +16,17 @@
 #include "kerf/base/parallel.h"
 #include "kerf/base/version.h"
 #include "kerf/io/output_file.h"
+#include "kerf/study/embree_builder.h"
 #include "kerf/trace/triangle_filter.h"
 
 namespace kerf::app {
 namespace {
 
-volatile std::sig_atomic_t interrupt_seen = 0;
+std::atomic<bool> interrupt_seen = false;
+static_assert(std::atomic<bool>::is_always_lock_free);  // so that a signal handler may set it
 
 void on_interrupt(int signal) {
-  if (interrupt_seen != 0) std::_Exit(128 + signal);
-  interrupt_seen = 1;
+  if (interrupt_seen.exchange(true)) std::_Exit(128 + signal);
 }
 
 /// "; did you mean ...?" for a word that no option or subcommand of the app has, else nothing.
@@ -66,11 +67,16 @@ int run(int argc, char** argv) {
                                                 triangle_kernels().instruction_set));
   app.allow_extras();  // to name the nearest word, which CLI11 does not
   app.footer("Example: kerf render room.yaml -o room.png --spp 256");
+  add_embree_builders();
   std::function<int()> command;
   add_render(app, command);
+  add_figure(app, command);
   add_check(app, command);
   add_inspect(app, command);
   add_list(app, command);
+  add_study(app, command);
+  add_make(app, command);
+  add_convert(app, command);
   app.require_subcommand(0, 1);
   try {
     app.parse(argc, argv);
@@ -127,7 +133,8 @@ void ignore_interrupts() {
   std::signal(SIGTERM, SIG_IGN);
 }
 
-bool interrupted() { return interrupt_seen != 0; }
+bool interrupted() { return interrupt_seen; }
+const std::atomic<bool>* interrupt_flag() { return &interrupt_seen; }
 
 }  // namespace kerf::app
 

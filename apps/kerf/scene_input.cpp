@@ -81,6 +81,21 @@ std::string settled_structure(const SceneArguments& arguments, const SceneDescri
 
 }  // namespace
 
+std::array<uint32_t, 2> parse_size(const std::string& text) {
+  std::array<uint32_t, 2> size{};
+  const char* const end = text.data() + text.size();
+  const auto width = std::from_chars(text.data(), end, size[0]);
+  const bool has_x = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
+  const auto height = has_x ? std::from_chars(width.ptr + 1, end, size[1]) : width;
+  const bool is_whole = has_x && height.ec == std::errc() && height.ptr == end;
+  if (!is_whole || size[0] == 0 || size[1] == 0 || size[0] > 65536 || size[1] > 65536) {
+    throw Error(
+        ErrorCode::invalid_option, "--size",
+        fmt::format("'{}' is not a size; write it as WIDTHxHEIGHT, such as 960x640, each from 1 to 65536", text));
+  }
+  return size;
+}
+
 void add_scene_options(CLI::App& command, SceneArguments& a) {
   command.add_option("input", a.input, "A YAML scene (.yaml) or a model (.ply, .obj, .stl, .glb, .gltf and more)")
       ->required();
@@ -99,21 +114,6 @@ void add_camera_options(CLI::App& command, SceneArguments& a) {
   add_vector(command, "--look-at", a.look_at, "Point in the middle of the picture");
   add_vector(command, "--up", a.up, "Direction that is up (default: 0,1,0)");
   command.add_option("--fov", a.fov, "Vertical field of view in degrees (default: the scene's, or 45)");
-}
-
-std::array<uint32_t, 2> parse_size(const std::string& text) {
-  std::array<uint32_t, 2> size{};
-  const char* const end = text.data() + text.size();
-  const auto width = std::from_chars(text.data(), end, size[0]);
-  const bool has_x = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
-  const auto height = has_x ? std::from_chars(width.ptr + 1, end, size[1]) : width;
-  const bool is_whole = has_x && height.ec == std::errc() && height.ptr == end;
-  if (!is_whole || size[0] == 0 || size[1] == 0 || size[0] > 65536 || size[1] > 65536) {
-    throw Error(
-        ErrorCode::invalid_option, "--size",
-        fmt::format("'{}' is not a size; write it as WIDTHxHEIGHT, such as 960x640, each from 1 to 65536", text));
-  }
-  return size;
 }
 
 SceneInput read_input(const SceneArguments& arguments, double aspect) {

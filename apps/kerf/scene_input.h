@@ -24,7 +24,7 @@ struct SceneArguments {
 void add_scene_options(CLI::App& command, SceneArguments& arguments);
 void add_camera_options(CLI::App& command, SceneArguments& arguments);
 
-/// Width and height of a picture from "960x640"; throws Error (invalid_option) for what is none.
+/// "WIDTHxHEIGHT", each from 1 to 65536. Throws Error (invalid_option).
 std::array<uint32_t, 2> parse_size(const std::string& text);
 
 /// A scene with all that its file may leave open settled.

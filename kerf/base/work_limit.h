@@ -17,9 +17,13 @@ struct WorkLimit {
   size_t bytes = static_cast<size_t>(-1);        ///< what the work may take, at most
   const std::atomic<bool>* cancelled = nullptr;  ///< becomes true when the work is not wanted any more
 
+  /// From now on; infinite: never.
   static WorkLimit seconds(double seconds) {
+    constexpr double kLongest = 1e8;  // some years: what does not fit a clock's number must not
     WorkLimit limit;
-    limit.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    if (seconds < kLongest)
+      limit.deadline =
+          Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
     return limit;
   }
 

@@ -8,14 +8,30 @@
 namespace kerf {
 namespace {
 
-constexpr auto kBinnedOptions = [] {
+/// What all top-down builders share, and a builder's own.
+template <size_t kOwn>
+constexpr auto with_shared(const OptionSpec (&own)[kOwn]) {
   constexpr size_t kShared = std::size(TopDownOptions::kSpecs);
-  std::array<OptionSpec, kShared + 2> specs{};
+  std::array<OptionSpec, kShared + kOwn> specs{};
   std::copy_n(TopDownOptions::kSpecs, kShared, specs.begin());
-  specs[kShared] = {"bins", "slices along each axis; the planes tried lie between them", 32, 2, 256, true};
-  specs[kShared + 1] = {"planes", "the same as bins = planes + 1", 31, 1, 255, true};
+  std::copy_n(own, kOwn, specs.begin() + kShared);
   return specs;
-}();
+}
+
+constexpr OptionSpec kBins = {"bins", "slices along each axis; the planes tried lie between them", 32, 2, 256, true};
+constexpr OptionSpec kSeed = {"seed", "another number gives another tree", 1, 0, 0x1p32, true};
+
+constexpr auto kBinnedOptions = with_shared({kBins, {"planes", "the same as bins = planes + 1", 31, 1, 255, true}});
+constexpr auto kShelvesOptions = with_shared(
+    {kBins, {"share", "a box with more than this share of the node's area goes on a shelf", 0.5, 0, 1, false, true}});
+constexpr auto kRandomOptions = with_shared({{"candidates", "planes tried at each node", 16, 1, 256, true}, kSeed});
+
+constexpr std::string_view kInsertionOrders[] = {"given", "shuffled"};
+constexpr std::string_view kInsertionSearches[] = {"way", "all"};
+constexpr auto kInsertionOptions = with_shared(
+    {{"order", "the order in which references are inserted", 1, kInsertionOrders},
+     {"search", "places tried: on the way of least growth, or all that may be better", 1, kInsertionSearches},
+     kSeed});
 
 constexpr BuilderEntry kBuilders[] = {
     {"binned_sah", "the cheapest of a few planes by the surface area heuristic",
@@ -27,6 +43,15 @@ constexpr BuilderEntry kBuilders[] = {
      "Kay, Kajiya: Ray Tracing Complex Scenes, 1986", TopDownOptions::kSpecs, build_spatial_median},
     {"object_median", "equal counts along the axis where the centres spread most",
      "Kay, Kajiya: Ray Tracing Complex Scenes, 1986", TopDownOptions::kSpecs, build_object_median},
+    {"random_top_down", "the cheapest of some random planes by the surface area heuristic",
+     "Ng, Trifonov: Automatic Bounding Volume Hierarchy Generation Using Stochastic Search Methods, 2003",
+     kRandomOptions, build_random_top_down},
+    {"oversize_shelves", "binned_sah, but references nearly as large as their node stay there in leaves of their own",
+     "Havran, Herzog, Seidel: On the Fast Construction of Spatial Hierarchies for Ray Tracing, 2006", kShelvesOptions,
+     build_oversize_shelves},
+    {"insertion", "one reference after another, each where it adds least to the cost",
+     "Goldsmith, Salmon: Automatic Creation of Object Hierarchies for Ray Tracing, 1987 (search=way)",
+     kInsertionOptions, build_insertion},
 };
 
 }  // namespace

@@ -6,10 +6,22 @@
 
 #include "kerf/base/options.h"
 #include "kerf/base/work_limit.h"
+#include "kerf/references/clipper.h"
 #include "kerf/references/reference.h"
 #include "kerf/tree/bvh.h"
 
 namespace kerf {
+
+/// What a builder works on. References alone are enough for one that does not split.
+struct BuildInput {
+  std::vector<Reference> references;
+  Clipper clipper;  ///< for a builder that splits; its function may be null for the others
+  WorkLimit limit;
+
+  BuildInput() = default;
+  BuildInput(std::vector<Reference> all, const Clipper& clip = {}, const WorkLimit& work = {})
+      : references(std::move(all)), clipper(clip), limit(work) {}
+};
 
 /// One builder of the menu: references in, tree out.
 struct BuilderEntry {
@@ -17,15 +29,18 @@ struct BuilderEntry {
   std::string_view sentence;
   std::string_view source;
   std::span<const OptionSpec> options;
-  Bvh (*build)(std::vector<Reference> references, const OptionValues& options, const WorkLimit& limit);
+  Bvh (*build)(BuildInput input, const OptionValues& options);
 };
 
 /// All builders that make a Bvh. The same references give the same tree, byte for byte, for any number of threads.
 std::span<const BuilderEntry> builders();
 
-Bvh build_spatial_median(std::vector<Reference> references, const OptionValues& options, const WorkLimit& limit = {});
-Bvh build_object_median(std::vector<Reference> references, const OptionValues& options, const WorkLimit& limit = {});
-Bvh build_binned_sah(std::vector<Reference> references, const OptionValues& options, const WorkLimit& limit = {});
-Bvh build_sweep_sah(std::vector<Reference> references, const OptionValues& options, const WorkLimit& limit = {});
+Bvh build_spatial_median(BuildInput input, const OptionValues& options);
+Bvh build_object_median(BuildInput input, const OptionValues& options);
+Bvh build_binned_sah(BuildInput input, const OptionValues& options);
+Bvh build_sweep_sah(BuildInput input, const OptionValues& options);
+Bvh build_insertion(BuildInput input, const OptionValues& options);
+Bvh build_random_top_down(BuildInput input, const OptionValues& options);
+Bvh build_oversize_shelves(BuildInput input, const OptionValues& options);
 
 }  // namespace kerf

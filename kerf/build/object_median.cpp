@@ -13,9 +13,9 @@ class ObjectMedian : public ReferenceOrder {
 
 }  // namespace
 
-Bvh build_object_median(std::vector<Reference> references, const OptionValues& options, const WorkLimit& limit) {
-  ObjectMedian partition(std::move(references));
-  return build_top_down(partition, TopDownOptions::from(options), limit);
+Bvh build_object_median(BuildInput input, const OptionValues& options) {
+  ObjectMedian partition(std::move(input.references));
+  return build_top_down(partition, TopDownOptions::from(options), input.limit);
 }
 
 }  // namespace kerf

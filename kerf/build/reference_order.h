@@ -35,13 +35,18 @@ class ReferenceOrder {
     const uint32_t middle = subset.begin + subset.count() / 2;
     std::nth_element(references_.begin() + subset.begin, references_.begin() + middle, references_.begin() + subset.end,
                      [&](const Reference& a, const Reference& b) { return key(a) < key(b); });
+    return halves_at(subset, middle);
+  }
+
+ protected:
+  /// The two parts as the references stand.
+  Halves halves_at(const Subset& subset, uint32_t middle) const {
     Halves halves{{subset.begin, middle, {}, {}}, {middle, subset.end, {}, {}}};
     for (uint32_t i = subset.begin; i < middle; ++i) add(halves.left, references_[i]);
     for (uint32_t i = middle; i < subset.end; ++i) add(halves.right, references_[i]);
     return halves;
   }
 
- protected:
   std::span<const Reference> references(const Subset& subset) const {
     return {references_.data() + subset.begin, subset.count()};
   }

@@ -28,9 +28,9 @@ class SpatialMedian : public ReferenceOrder {
 
 }  // namespace
 
-Bvh build_spatial_median(std::vector<Reference> references, const OptionValues& options, const WorkLimit& limit) {
-  SpatialMedian partition(std::move(references));
-  return build_top_down(partition, TopDownOptions::from(options), limit);
+Bvh build_spatial_median(BuildInput input, const OptionValues& options) {
+  SpatialMedian partition(std::move(input.references));
+  return build_top_down(partition, TopDownOptions::from(options), input.limit);
 }
 
 }  // namespace kerf

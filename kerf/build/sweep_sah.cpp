@@ -128,9 +128,9 @@ class SweepSah {
 
 }  // namespace
 
-Bvh build_sweep_sah(std::vector<Reference> references, const OptionValues& options, const WorkLimit& limit) {
-  SweepSah partition(std::move(references));
-  return build_top_down(partition, TopDownOptions::from(options), limit);
+Bvh build_sweep_sah(BuildInput input, const OptionValues& options) {
+  SweepSah partition(std::move(input.references));
+  return build_top_down(partition, TopDownOptions::from(options), input.limit);
 }
 
 }  // namespace kerf

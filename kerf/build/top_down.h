@@ -76,7 +76,8 @@ inline void check_depth(size_t references, const TopDownOptions& options) {
 
 /// The recursion. Every subset has its own stretch of the node array, so that subtrees can be built at once and the
 /// result does not depend on which came first: the nodes below the root of [begin, end) take at most
-/// 2 (end - begin) - 2 places from `place` on, the root's two children the first two of them.
+/// 2 (end - begin) - 2 places from `place` on, the root's two children the first two of them. The child with more
+/// references is the first.
 template <Partition P>
 class TopDown {
  public:
@@ -91,9 +92,11 @@ class TopDown {
     }
     const auto child = static_cast<uint32_t>(place);
     nodes_[node] = {subset.bounds.lower, child, subset.bounds.upper, 0};
-    const auto build_left = [&] { build(halves->left, child, place + 2, depth + 1); };
+    // A ray that begins in both boxes visits the first child first: the one with more to hit.
+    const uint32_t left = halves->left.count() >= halves->right.count() ? 0 : 1;
+    const auto build_left = [&] { build(halves->left, child + left, place + 2, depth + 1); };
     const auto build_right = [&] {
-      build(halves->right, child + 1, place + 2 * size_t{halves->left.count()}, depth + 1);
+      build(halves->right, child + 1 - left, place + 2 * size_t{halves->left.count()}, depth + 1);
     };
     if (subset.count() >= kParallelCount) {
       limit_.check();

@@ -74,11 +74,11 @@ void write_pfm(const std::string& path, const Image& image) {
   file.commit();
 }
 
-void write_png(const std::string& path, const Image& image) {
-  check_image(path, image);
+std::vector<unsigned char> encode_png(const Image& image, const std::string& place) {
+  check_image(place, image);
   const size_t row = size_t{image.width} * image.channels;
   if (image.pixels.size() + image.height > kMostPngBytes) {
-    throw Error(ErrorCode::invalid_argument, path,
+    throw Error(ErrorCode::invalid_argument, place,
                 fmt::format("{} x {} pixels are too many for a PNG; write a PFM", image.width, image.height));
   }
   std::vector<unsigned char> bytes;
@@ -90,8 +90,13 @@ void write_png(const std::string& path, const Image& image) {
                             static_cast<int>(image.height), static_cast<int>(image.channels), &size),
       std::free);
   if (png == nullptr) throw std::bad_alloc();
+  return {png.get(), png.get() + size};
+}
+
+void write_png(const std::string& path, const Image& image) {
+  const std::vector<unsigned char> png = encode_png(image, path);
   OutputFile file(path);
-  file.write({reinterpret_cast<const char*>(png.get()), static_cast<size_t>(size)});
+  file.write({reinterpret_cast<const char*>(png.data()), png.size()});
   file.commit();
 }
 

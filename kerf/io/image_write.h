@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "kerf/io/image.h"
 
@@ -20,6 +21,10 @@ void write_pfm(const std::string& path, const Image& image);
 /// The bytes of pixels and rows that write_png() takes: stb counts them, and twice as many while it compresses, in an
 /// int.
 inline constexpr size_t kMostPngBytes = size_t{1} << 29;
+
+/// The bytes of a PNG with 8 bits a channel, as write_png() writes them and with the same errors, whose place is
+/// `place`. The same image gives the same bytes.
+std::vector<unsigned char> encode_png(const Image& image, const std::string& place);
 
 /// Writes 8 bits a channel. Values are meant for display, in [0, 1]; what lies outside is clamped and NaN becomes 0.
 /// Throws Error (invalid_argument) for an image of more than kMostPngBytes.

@@ -3,6 +3,27 @@
 #include "kerf/base/parallel.h"
 
 namespace kerf {
+namespace {
+
+uint32_t axis_mark(const Bvh2Node& node) {
+  const Box3f first = node.child[0].bounds(), second = node.child[1].bounds();
+  Vec3f apart;
+  for (uint32_t axis = 0; axis < 3; ++axis) apart[axis] = center(second, axis) - center(first, axis);
+  const uint32_t axis = largest_axis(abs(apart));
+  return Bvh2Child::kAxisMark | axis | (apart[axis] < 0 ? Bvh2Child::kSecondIsLower : 0);
+}
+
+/// Calls f(child) for the root and every child.
+template <class Layout, class F>
+void for_each_child(Layout& layout, F&& f) {
+  if (layout.is_empty()) return;
+  f(layout.root);
+  for (auto& node : layout.nodes) {
+    for (auto& child : node.child) f(child);
+  }
+}
+
+}  // namespace
 
 Bvh2 make_bvh2(Bvh&& bvh) {
   Bvh2 layout;
@@ -27,7 +48,8 @@ Bvh make_bvh(const Bvh2& layout) {
   Bvh bvh;
   if (layout.is_empty()) return bvh;
   const auto node_of = [](const Bvh2Child& child) {
-    return BvhNode{child.lower, child.count > 0 ? child.first : 2 * child.first + 1, child.upper, child.count};
+    return BvhNode{child.lower, child.is_leaf() ? child.first : 2 * child.first + 1, child.upper,
+                   child.is_leaf() ? child.count : 0};
   };
   bvh.nodes.push_back(node_of(layout.root));
   for (const Bvh2Node& node : layout.nodes) {
@@ -35,6 +57,23 @@ Bvh make_bvh(const Bvh2& layout) {
   }
   bvh.slots = layout.slots;
   return bvh;
+}
+
+void mark_axes(Bvh2& layout) {
+  for_each_child(layout, [&](Bvh2Child& child) {
+    if (!child.is_leaf()) child.count = axis_mark(layout.nodes[child.first]);
+  });
+}
+
+std::optional<std::string> find_axis_fault(const Bvh2& layout) {
+  std::optional<std::string> fault;
+  for_each_child(layout, [&](const Bvh2Child& child) {
+    if (child.is_leaf() || fault) return;
+    if (child.count != axis_mark(layout.nodes[child.first])) {
+      fault = "the children of node " + std::to_string(child.first) + " are marked with a wrong axis";
+    }
+  });
+  return fault;
 }
 
 }  // namespace kerf

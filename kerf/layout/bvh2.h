@@ -12,8 +12,12 @@ struct Bvh2Child {
   Vec3f lower;
   uint32_t first = 0;  ///< inner node: its number; leaf: its first slot
   Vec3f upper;
-  uint32_t count = 0;  ///< inner node: 0; leaf: its number of slots
+  uint32_t count = 0;  ///< inner node: 0, or what mark_axes() wrote; leaf: its number of slots
 
+  /// How mark_axes() writes an inner node's count: the mark, the axis, and a bit.
+  static constexpr uint32_t kAxisMark = 0x80000000U, kAxis = 3, kSecondIsLower = 4;
+
+  bool is_leaf() const { return count != 0 && (count & kAxisMark) == 0; }
   Box3f bounds() const { return {lower, upper}; }
   /// The lower sides as floats 0 to 2, the upper ones as 4 to 6.
   const float* sides() const { return &lower.x; }
@@ -41,5 +45,13 @@ Bvh2 make_bvh2(Bvh&& bvh);
 
 /// The tree that a layout was made from.
 Bvh make_bvh(const Bvh2& layout);
+
+/// Writes into the count of each inner node along which axis the centres of its children differ most, and whether the
+/// second child is the lower one there: which comes first then follows from the sign of a ray's direction (Mahovsky:
+/// Ray Tracing with Reduced-Precision Bounding Volume Hierarchies, 2005).
+void mark_axes(Bvh2& layout);
+
+/// A node whose count is not what mark_axes() writes, if there is one.
+std::optional<std::string> find_axis_fault(const Bvh2& layout);
 
 }  // namespace kerf

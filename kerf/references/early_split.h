@@ -1,9 +1,9 @@
 #pragma once
 
 #include <limits>
-#include <vector>
 
 #include "kerf/references/clipper.h"
+#include "kerf/references/split_result.h"
 
 namespace kerf {
 
@@ -19,18 +19,12 @@ struct EarlySplit {
   static EarlySplit with_budget(double budget) { return {std::numeric_limits<double>::min(), budget}; }
 };
 
-struct EarlySplitResult {
-  std::vector<Reference> references;
-  double sa_max = 0;    ///< the limit that was used
-  bool capped = false;  ///< true: the limit asked for would have passed the cap, so it was raised
-};
-
 /// Early split clipping (Ernst and Greiner: Early Split Clipping for Bounding Volume Hierarchies, 2007, Algorithm 4):
 /// while the surface area of a primitive's box is above sa_max, it is cut in the middle of its longest side and
 /// replaced by the tight boxes of the two parts; parts that are empty are dropped. Takes and gives references in the
 /// caller's order, pieces of one primitive side by side. Parallel; the outcome does not depend on the number of
 /// threads. Ends for every input: a box that has no float between its sides is not cut further. Throws
 /// Error(invalid_option) if sa_max is not above 0 or cap is not at least 1 (NaN included).
-EarlySplitResult early_split(std::span<const Reference> whole, const Clipper& clipper, const EarlySplit& options);
+SplitResult early_split(std::span<const Reference> whole, const Clipper& clipper, const EarlySplit& options);
 
 }  // namespace kerf

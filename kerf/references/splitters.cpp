@@ -1,6 +1,8 @@
 #include "kerf/references/splitters.h"
 
 #include "kerf/base/error.h"
+#include "kerf/references/early_split.h"
+#include "kerf/references/refine.h"
 
 namespace kerf {
 namespace {
@@ -16,21 +18,55 @@ constexpr OptionSpec kEarlySplitOptions[] = {
     {"budget", "instead of sa_max: as finely as this many references per primitive allow", 1.5, 1, kMostPerPrimitive},
 };
 
-EarlySplitResult split_early(const SplitInput& input, const OptionValues& values) {
+SplitResult split_early(const SplitInput& input, const OptionValues& values) {
   if (values.is_set("budget")) {
     if (values.is_set("sa_max") || values.is_set("cap")) {
       throw Error(ErrorCode::invalid_option, "early_split", "budget replaces sa_max and cap: give one or the other");
     }
-    EarlySplitResult result = early_split(input.whole, input.clipper, EarlySplit::with_budget(values["budget"]));
+    SplitResult result = early_split(input.whole, input.clipper, EarlySplit::with_budget(values["budget"]));
     result.capped = false;  // no limit was asked for
     return result;
   }
   return early_split(input.whole, input.clipper, {values["sa_max"], values["cap"]});
 }
 
+constexpr std::string_view kMeasures[] = {"edge", "area"};
+constexpr OptionSpec kRefineOptions[] = {
+    {"edge", "length above which an edge is halved, scene units", kInfinity, 0, kInfinity, false, true},
+    {"area", "area above which a triangle is cut in four, squared scene units", kInfinity, 0, kInfinity, false, true},
+    {"cap", "references per primitive, on average, that are never passed", 16, 1, kMostPerPrimitive},
+    {"budget", "instead of edge and area: as finely as this many references per primitive allow", 4, 1,
+     kMostPerPrimitive},
+    {"by", "what a budget lowers: the longest edge or the largest area", Refinement::edge, kMeasures},
+};
+
+SplitResult split_by_refinement(const SplitInput& input, const OptionValues& values) {
+  const bool by_area = values.is_set("area");
+  if (values.is_set("budget")) {
+    if (values.is_set("edge") || by_area || values.is_set("cap")) {
+      throw Error(ErrorCode::invalid_option, "refine", "budget replaces edge, area and cap: give one or the other");
+    }
+    const auto measure = static_cast<Refinement::Measure>(values["by"]);
+    SplitResult result =
+        refine(input.geometries, input.whole, Refinement::with_budget(values["budget"], measure), input.limit);
+    result.capped = false;  // no limit was asked for
+    return result;
+  }
+  if (values.is_set("by")) throw Error(ErrorCode::invalid_option, "refine", "by is of no meaning without budget");
+  if (by_area && values.is_set("edge")) {
+    throw Error(ErrorCode::invalid_option, "refine", "edge and area are two measures: give one");
+  }
+  const Refinement::Measure measure = by_area ? Refinement::area : Refinement::edge;
+  return refine(input.geometries, input.whole, {measure, values[by_area ? "area" : "edge"], values["cap"]},
+                input.limit);
+}
+
 constexpr SplitterEntry kSplitters[] = {
     {"early_split", "cuts large primitives into several tight boxes before a tree is built",
      "Ernst, Greiner: Early Split Clipping for Bounding Volume Hierarchies, 2007", kEarlySplitOptions, split_early},
+    {"refine", "cuts large triangles into small ones, for the boxes of a tree only, before it is built",
+     "Ernst, Greiner: Early Split Clipping for Bounding Volume Hierarchies, 2007, section 4", kRefineOptions,
+     split_by_refinement},
 };
 
 }  // namespace

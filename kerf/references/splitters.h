@@ -5,7 +5,8 @@
 
 #include "kerf/base/options.h"
 #include "kerf/base/work_limit.h"
-#include "kerf/references/early_split.h"
+#include "kerf/references/clipper.h"
+#include "kerf/references/split_result.h"
 
 namespace kerf {
 
@@ -23,7 +24,7 @@ struct SplitterEntry {
   std::string_view sentence;
   std::string_view source;
   std::span<const OptionSpec> options;
-  EarlySplitResult (*split)(const SplitInput& input, const OptionValues& options);
+  SplitResult (*split)(const SplitInput& input, const OptionValues& options);
 };
 
 std::span<const SplitterEntry> splitters();

@@ -113,11 +113,11 @@ StructureInput Scene::Built::make_input(const Pipeline& pipeline, const BuildOpt
   input.limit.check();
   if (const auto* splitter = std::get_if<const SplitterEntry*>(&pipeline.stages.front().entry->entry)) {
     const size_t kept = input.references.size();
-    EarlySplitResult split = (*splitter)->split({all, input.references, geometry_clipper(all), options.limit},
+    SplitResult split = (*splitter)->split({all, input.references, geometry_clipper(all), options.limit},
                                                 pipeline.stages.front().options);
     input.references = std::move(split.references);
     input.is_split = input.references.size() > kept;
-    report.sa_max = split.sa_max;
+    report.sa_max = split.limit;
     report.capped = split.capped;
   }
   report.seconds.split = watch.lap();
@@ -135,7 +135,9 @@ void Scene::Built::make_structure(StructureInput input, std::span<const Stage> s
   const LayoutEntry& layout =
       stages.size() > 1 ? *std::get<const LayoutEntry*>(stages[1].entry->entry) : layouts().front();
   const OptionValues options = options_for(stages[0], layout);
-  Bvh bvh = builder.build(std::exchange(input.references, {}), options, input.limit);
+  const std::span<const Geometry> all = geometries;
+  Bvh bvh = builder.build({std::exchange(input.references, {}), geometry_clipper(all), input.limit}, options);
+  input.is_split = bvh.slots.size() > report.primitives - report.invalid - report.degenerate;  // some builders split
   if (input.is_split) mark_repeated(bvh, geometries);
   report.seconds.build = watch.lap();
   structure = layout.make(std::move(bvh), input, stages.size() > 1 ? stages[1].options : OptionValues(layout.options));

@@ -31,7 +31,8 @@ struct BuildReport {
   size_t degenerate = 0;                ///< of those: without area, so never hit and left out
   size_t references = 0;                ///< in the leaves
   double references_per_primitive = 0;  ///< R: references / (primitives that were not dropped or left out); 0 if none
-  double sa_max = 0;                    ///< the surface area limit that was used; infinite without splitting
+  /// The limit that the splitter used: a surface area, or refine's edge length or area; infinite without a splitter.
+  double sa_max = 0;
   bool capped = false;  ///< the limit asked for would have passed the cap on references, so it was raised
   size_t bytes = 0;     ///< of what rays are traced through, without the caller's memory
   size_t nodes = 0, leaves = 0;

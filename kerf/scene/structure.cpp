@@ -32,8 +32,9 @@ StructureStatistics measure(const Structure& structure) {
 
 namespace {
 
-constexpr LayoutEntry kLayouts[] = {kBvh2Layout};
-constexpr StructureEntry kStructures[] = {kBruteForceStructure};
+constexpr LayoutEntry kLayouts[] = {kBvh2Layout, kSkipPointerLayout, kPacketsLayout, kLateSplitLayout};
+constexpr StructureEntry kStructures[] = {kKdSahStructure, kBihStructure,      kUniformGridStructure, kOctreeStructure,
+                                          kBspStructure,   kQuadtreeStructure, kBruteForceStructure};
 
 }  // namespace
 

@@ -27,7 +27,8 @@ struct StudyReport {
 };
 
 /// The report as one HTML page that needs nothing else: charts are inline SVG, pictures are PNG in data URIs. All text
-/// is escaped. The same report gives the same bytes.
+/// is escaped, and the page is well-formed XML besides. The same report gives the same bytes. Throws Error
+/// (invalid_argument) as encode_png() does for a picture that is none.
 std::string html_report(const StudyReport& report);
 
 }  // namespace kerf

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -69,10 +70,15 @@ struct StudyOptions {
   size_t limit_bytes = static_cast<size_t>(-1);                    ///< of one build, as far as it tells before
   bool skip_invalid = false;
   bool with_overlap = true;
-  std::span<const StudyRays> loaded;  ///< traced instead of rays from the camera
+  const std::atomic<bool>* cancelled = nullptr;  ///< becomes true when no more is wanted, for what takes long
+  std::span<const StudyRays> loaded;             ///< traced instead of rays from the camera
   /// Called now and then with the share that is done and what is being done; returns false to stop.
   std::function<bool(double, std::string_view)> progress;
 };
+
+/// A row for everything in the menu that rays can be traced through, splitters at 1.5 references per triangle; without
+/// brute force, which few scenes have time for.
+std::vector<std::string> all_rows();
 
 /// Builds every row over the scene, shoots the same rays through all of them and measures. In the order of the rows,
 /// for each kind of rays in turn. A row that reaches a limit is there, not finished. Stopped by progress(), it returns

@@ -21,8 +21,6 @@ struct TraceCounts {
   PrimitiveTally* tests = nullptr;  ///< where given: the primitive tests of each primitive, added up
 
   void count_nodes(uint64_t n) { nodes += n; }
-  /// Tests of primitives that are not named: `tests` then adds up to less than `primitives`.
-  void count_primitives(uint64_t n) { primitives += n; }
   void count_primitives(std::span<const LeafSlot> tested) {
     primitives += tested.size();
     if (tests == nullptr) return;
@@ -34,7 +32,6 @@ struct TraceCounts {
 /// Stands where counts are not wanted, and costs nothing.
 struct NoCounts {
   void count_nodes(uint64_t) {}
-  void count_primitives(uint64_t) {}
   void count_primitives(std::span<const LeafSlot>) {}
   void count_boxes(uint64_t) {}
 };

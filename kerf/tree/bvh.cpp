@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "kerf/base/mix.h"
 #include "kerf/base/parallel.h"
 
 namespace kerf {
@@ -44,15 +45,6 @@ struct SlotCounts {
   }
   uint8_t& of(const LeafSlot& slot) { return count[first[slot.geometry()] + slot.primitive]; }
 };
-
-/// Mixes 64 bits (the finalizer of splitmix64: Steele, Lea, Flood 2014).
-uint64_t mix(uint64_t x) {
-  x ^= x >> 30;
-  x *= 0xBF58476D1CE4E5B9U;
-  x ^= x >> 27;
-  x *= 0x94D049BB133111EBU;
-  return x ^ (x >> 31);
-}
 
 class Hash {
  public:

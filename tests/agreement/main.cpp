@@ -18,6 +18,7 @@
 #include "kerf/io/ply.h"
 #include "kerf/scene/pipeline.h"
 #include "kerf/scene/scene.h"
+#include "kerf/study/embree_builder.h"
 #include "tests/agreement/verdict.h"
 #include "tests/support/embree_scene.h"
 #include "tests/support/scenes.h"
@@ -198,6 +199,7 @@ int run(const Arguments& arguments) {
 }  // namespace kerf::test
 
 int main(int argc, char** argv) {
+  kerf::add_embree_builders();
   kerf::test::Arguments arguments;
   CLI::App app("Compares every structure with brute force and Embree's robust scene on the scenes of KERF_SCENES.");
   app.footer("Example: kerf_agreement --scenes sponza,bunny --turns straight,x,y,z,xyz --size 300x200");

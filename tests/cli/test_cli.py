@@ -127,7 +127,7 @@ def test_json_says_what_was_done():
 def test_list_names_every_entry():
     menu = json.loads(kerf("list", "--json", "-").stdout)
     names = [entry["name"] for entry in menu]
-    assert {entry["kind"] for entry in menu} == {"splitter", "builder", "structure", "view", "material", "format"}
+    assert {entry["kind"] for entry in menu} == {"splitter", "builder", "structure", "view", "material", "model", "format"}
     assert kerf("list", "--quiet", "--threads", "2").returncode == 0
     for name in ["early_split", "spatial_median", "object_median", "sweep_sah", "binned_sah", "brute_force", "beauty",
                  "glass", ".obj"]:
@@ -137,7 +137,7 @@ def test_list_names_every_entry():
 
 
 def test_help_of_every_command_has_an_example():
-    for command in [[], ["render"], ["check"], ["list"]]:
+    for command in [[], ["render"], ["check"], ["list"], ["make"], ["convert"]]:
         result = kerf(*command, "--help")
         assert result.returncode == 0 and "Example" in result.stdout and "kerf " in result.stdout
     assert kerf("--version").stdout.startswith("kerf 0.")

@@ -7,9 +7,25 @@
 namespace kerf::test {
 namespace {
 
-/// A splitter with options that make it split what tests have; a new splitter needs a row.
-std::string splitter_text(std::string_view name) {
-  return name == "early_split" ? "early_split(budget=2)" : std::string(name);
+/// An entry with options that make it split what tests have; whatever splits needs a row.
+std::string splitting_text(std::string_view name) {
+  if (name == "early_split" || name == "late_split" || name == "refine") return std::string(name) + "(budget=2)";
+  return std::string(name);
+}
+
+/// An entry once for each word of each of its options but the default, which the bare name stands for.
+std::vector<std::string> variants(const MenuEntry& entry) {
+  std::vector<std::string> all;
+  for (const OptionSpec& option : entry.options) {
+    for (size_t word = 0; word < option.words.size(); ++word) {
+      if (static_cast<double>(word) == option.fallback) continue;
+      std::string text = splitting_text(entry.name);
+      if (text.ends_with(')')) text.back() = ',';
+      if (!text.ends_with(',')) text += '(';
+      all.push_back(text + std::string(option.name) + "=" + std::string(option.words[word]) + ")");
+    }
+  }
+  return all;
 }
 
 std::vector<std::string> pipelines(bool with_all_split) {
@@ -17,13 +33,17 @@ std::vector<std::string> pipelines(bool with_all_split) {
   const std::string early = "early_split(budget=2)+";
   for (const MenuEntry& entry : menu()) {
     const std::string name(entry.name);
-    if (entry.kind == "splitter") all.push_back(splitter_text(name) + "+binned_sah");
+    if (entry.kind == "splitter") all.push_back(splitting_text(name) + "+binned_sah");
     if (entry.kind == "builder" || entry.kind == "structure") all.push_back(name);
-    if (entry.kind == "layout") all.push_back("binned_sah+" + name);
+    if (entry.kind == "layout") all.push_back("binned_sah+" + splitting_text(name));
+    for (const std::string& variant : variants(entry)) {
+      if (entry.kind == "builder" || entry.kind == "structure") all.push_back(variant);
+      if (entry.kind == "layout") all.push_back("binned_sah+" + variant);
+    }
     const auto* structure = std::get_if<const StructureEntry*>(&entry.entry);
     if (structure != nullptr && (*structure)->takes_pieces) all.push_back(early + name);
     if (with_all_split && entry.kind == "builder") all.push_back(early + name);
-    if (with_all_split && entry.kind == "layout") all.push_back(early + "binned_sah+" + name);
+    if (with_all_split && entry.kind == "layout") all.push_back(early + "binned_sah+" + splitting_text(name));
   }
   return all;
 }

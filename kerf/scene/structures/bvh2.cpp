@@ -1,52 +1,50 @@
-#include "kerf/layout/bvh2.h"
-
 #include "kerf/scene/structures/all.h"
+#include "kerf/scene/structures/bvh2_structure.h"
 #include "kerf/trace/trace_bvh2.h"
 
 namespace kerf {
 namespace {
 
-class Bvh2Structure : public Structure {
- public:
-  Bvh2Structure(Bvh bvh, const StructureInput& input) : hash_(tree_hash(bvh)) {
-    tracer_.layout = make_bvh2(std::move(bvh));
-    tracer_.geometries = input.geometries;
-  }
+using AxisTracer = Bvh2TracerOf<ChildOrder::axis, BoxRay>;
 
-  const TraceTable& table() const override { return bvh2_table(); }
-  const void* data() const override { return &tracer_; }
-  size_t bytes() const override { return tracer_.layout.bytes(); }
-  uint64_t hash() const override { return hash_; }
+/// Its inner nodes have axes in them, which are to be right as well.
+class AxisStructure : public Bvh2Structure<AxisTracer> {
+ public:
+  AxisStructure(Bvh bvh, const StructureInput& input) : Bvh2Structure(std::move(bvh), input) {
+    mark_axes(tracer().layout);
+  }
 
   std::optional<std::string> find_fault() const override {
-    const Bvh bvh = make_bvh(tracer_.layout);
-    if (tree_hash(bvh) != hash_) return "it is not the tree that it was made from";
-    return kerf::find_fault(bvh, tracer_.geometries, kLargestLeaf);
+    const std::optional<std::string> fault = Bvh2Structure::find_fault();
+    return fault ? fault : find_axis_fault(tracer().layout);
   }
-
-  void visit_nodes(const std::function<void(const NodeView&)>& visit) const override {
-    if (!tracer_.layout.is_empty()) visit_child(tracer_.layout.root, 0, visit);
-  }
-
- private:
-  static constexpr uint32_t kLargestLeaf = 255;  // the most that a builder's option `leaf` allows
-
-  void visit_child(const Bvh2Child& child, uint32_t depth, const std::function<void(const NodeView&)>& visit) const {
-    const bool is_leaf = child.count > 0;
-    const std::span<const LeafSlot> slots = tracer_.layout.slots;
-    visit({child.bounds(), depth, is_leaf, is_leaf ? slots.subspan(child.first, child.count) : slots.first(0)});
-    if (is_leaf) return;
-    for (const Bvh2Child& below : tracer_.layout.nodes[child.first].child) visit_child(below, depth + 1, visit);
-  }
-
-  Bvh2Tracer tracer_;
-  uint64_t hash_;
 };
+
+using Maker = std::unique_ptr<const Structure> (*)(Bvh bvh, const StructureInput& input);
+
+template <class Made>
+std::unique_ptr<const Structure> make(Bvh bvh, const StructureInput& input) {
+  return std::make_unique<const Made>(std::move(bvh), input);
+}
+
+template <ChildOrder kOrder, class BoxTest>
+constexpr Maker kMake = make<Bvh2Structure<Bvh2TracerOf<kOrder, BoxTest>>>;
+
+// In the order of the words in all.h.
+constexpr Maker kByOrder[] = {kMake<ChildOrder::entry, BoxRay>, kMake<ChildOrder::fixed, BoxRay>, make<AxisStructure>,
+                              kMake<ChildOrder::heap, BoxRay>};
+constexpr Maker kByBoxTest[] = {kMake<ChildOrder::entry, BoxRay>, kMake<ChildOrder::entry, NaiveBoxRay>,
+                                kMake<ChildOrder::entry, WilliamsBoxRay>, kMake<ChildOrder::entry, PlueckerBoxRay>};
 
 }  // namespace
 
-std::unique_ptr<const Structure> make_bvh2_structure(Bvh bvh, const StructureInput& input, const OptionValues&) {
-  return std::make_unique<const Bvh2Structure>(std::move(bvh), input);
+std::unique_ptr<const Structure> make_bvh2_structure(Bvh bvh, const StructureInput& input,
+                                                     const OptionValues& options) {
+  if (options.is_on("order") && options.is_on("box")) {
+    throw Error(ErrorCode::invalid_option, "bvh2", "another box test goes with order=entry only");
+  }
+  const auto order = static_cast<size_t>(options["order"]), box = static_cast<size_t>(options["box"]);
+  return (box > 0 ? kByBoxTest[box] : kByOrder[order])(std::move(bvh), input);
 }
 
 }  // namespace kerf

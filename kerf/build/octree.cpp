@@ -1,0 +1,143 @@
+#include "kerf/build/octree.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "kerf/base/parallel.h"
+#include "kerf/base/rounding.h"
+
+namespace kerf {
+namespace {
+
+constexpr size_t kParallelCount = 2048;  // fewer references are not worth tasks
+
+/// A cell while the tree is built.
+struct Branch {
+  uint32_t octants = 0;
+  std::vector<Branch> children;
+  std::vector<LeafSlot> slots;
+};
+
+class OctreeBuilder {
+ public:
+  OctreeBuilder(const Clipper& clipper, const OctreeOptions& options, uint32_t axes, const WorkLimit& limit)
+      : clipper_(clipper), options_(options), axes_(axes), limit_(limit) {}
+
+  /// `room`: slots that may stand below.
+  void build(Branch& branch, std::vector<Reference> pieces, const Box3f& cell, uint32_t depth, double room) const {
+    if (pieces.size() >= kParallelCount) limit_.check();
+    std::array<std::vector<Reference>, 8> parts;
+    if (pieces.size() <= options_.leaf_size || depth == options_.max_depth || !divide(pieces, cell, room, parts)) {
+      branch.slots.reserve(pieces.size());
+      for (const Reference& piece : pieces) branch.slots.push_back({piece.geometry, piece.primitive});
+      return;
+    }
+    const bool worth_tasks = pieces.size() >= kParallelCount;
+    std::vector<Reference>().swap(pieces);
+    std::array<uint32_t, 8> octants{};
+    size_t count = 0, total = 0;
+    for (uint32_t octant = 0; octant < 8; ++octant) {
+      total += parts[octant].size();
+      if (parts[octant].empty()) continue;
+      octants[count++] = octant;
+      branch.octants |= 1U << octant;
+    }
+    branch.children.resize(count);
+    parallel_for(count, worth_tasks ? 1 : count, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        std::vector<Reference>& part = parts[octants[i]];
+        const double share = static_cast<double>(part.size()) / static_cast<double>(total);
+        build(branch.children[i], std::move(part), octant_of(cell, octants[i], axes_), depth + 1, room * share);
+      }
+    });
+  }
+
+ private:
+  /// Sorts pieces into octants; false if the cell shall not be divided.
+  bool divide(const std::vector<Reference>& pieces, const Box3f& cell, double room,
+              std::array<std::vector<Reference>, 8>& parts) const {
+    size_t total = 0;
+    for (const Reference& piece : pieces) {
+      Reference part = piece;
+      const auto cut = [&](const Box3f& box, uint32_t axis, float position) -> CutBoxes {
+        part.lower = box.lower;
+        part.upper = box.upper;
+        const ClippedBoxes boxes = clipper_(part, axis, position);
+        return {boxes.below, boxes.above};
+      };
+      for_each_octant(cell, axes_, piece.bounds(), cut, [&](uint32_t octant, const Box3f& box) {
+        part.lower = box.lower;
+        part.upper = box.upper;
+        parts[octant].push_back(part);
+        ++total;
+      });
+      if (static_cast<double>(total) > room) return false;
+    }
+    const double area = half_area(cell);
+    double below = 0;
+    for (uint32_t octant = 0; octant < 8; ++octant) {
+      below += half_area(octant_of(cell, octant, axes_)) * static_cast<double>(parts[octant].size());
+    }
+    return area + below < area * static_cast<double>(pieces.size());
+  }
+
+  const Clipper& clipper_;
+  const OctreeOptions& options_;
+  const uint32_t axes_;
+  const WorkLimit& limit_;
+};
+
+/// Puts a branch and what is below it in its place in the tree.
+void flatten(Octree& tree, size_t number, const Branch& branch) {
+  if (branch.children.empty()) {
+    tree.nodes[number] = {static_cast<uint32_t>(tree.slots.size()), static_cast<uint32_t>(branch.slots.size())};
+    tree.slots.insert(tree.slots.end(), branch.slots.begin(), branch.slots.end());
+    return;
+  }
+  const size_t first = tree.nodes.size();
+  tree.nodes[number] = {static_cast<uint32_t>(first), OctreeNode::kInner | branch.octants};
+  tree.nodes.resize(first + branch.children.size());
+  for (size_t i = 0; i < branch.children.size(); ++i) flatten(tree, first + i, branch.children[i]);
+}
+
+Box3f bounds_of(std::span<const Reference> references) {
+  Box3f bounds;
+  for (const Reference& reference : references) bounds.extend(reference.bounds());
+  return bounds;
+}
+
+}  // namespace
+
+uint32_t shortest_axis(std::span<const Reference> references) {
+  const Vec3f extent = bounds_of(references).extent();
+  const uint32_t xy = extent.x < extent.y ? kX : kY;
+  return extent[xy] < extent.z ? xy : kZ;
+}
+
+Octree build_octree(std::span<const Reference> references, const Clipper& clipper, const OctreeOptions& options,
+                    const WorkLimit& limit) {
+  Octree tree;
+  if (references.empty()) return tree;
+  tree.axes = options.undivided < 0 ? Octree::kAllAxes : Octree::kAllAxes & ~(1U << options.undivided);
+  tree.bounds = bounds_of(references);
+  if (options.cube) {
+    const double side = largest(to_double(tree.bounds.upper) - to_double(tree.bounds.lower));
+    for (uint32_t a = 0; a < 3; ++a) {
+      if ((tree.axes >> a & 1) != 0) tree.bounds.upper[a] = round_up(tree.bounds.lower[a] + side);
+    }
+  }
+  const double most =
+      std::min(static_cast<double>(kMaxReferences), options.cap * static_cast<double>(references.size()));
+  limit.check(static_cast<size_t>(options.cap * 2) * references.size() * sizeof(Reference));
+  Branch root;
+  OctreeBuilder(clipper, options, tree.axes, limit)
+      .build(root, {references.begin(), references.end()}, tree.bounds, 0, most);
+  tree.nodes.resize(1);
+  flatten(tree, 0, root);
+  tree.nodes.shrink_to_fit();
+  tree.slots.shrink_to_fit();
+  return tree;
+}
+
+}  // namespace kerf

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "kerf/base/parallel.h"
+#include "kerf/references/reference.h"
+
+namespace kerf {
+
+/// How many references `cap` for each of `whole` are, and never more than a tree can hold.
+inline size_t most_references(size_t whole, double cap) {
+  const double allowed = std::floor(cap * static_cast<double>(whole));
+  return static_cast<size_t>(std::min(static_cast<double>(kMaxReferences), allowed));
+}
+
+/// Calls split(reference, emit) for each reference, in blocks at once; split calls emit(piece) for each piece, which
+/// returns false to stop early. The pieces in order, or nothing if they are more than `most`.
+template <class Split>
+std::optional<std::vector<Reference>> split_each(std::span<const Reference> whole, size_t most, Split&& split) {
+  constexpr size_t kGrain = 1024;
+  constexpr size_t kTellEvery = 256;
+  std::vector<std::vector<Reference>> blocks((whole.size() + kGrain - 1) / kGrain);
+  std::atomic<size_t> total = 0;
+  parallel_for(whole.size(), kGrain, [&](size_t begin, size_t end) {
+    std::vector<Reference>& out = blocks[begin / kGrain];
+    size_t told = 0;  // pieces of `out` that `total` knows of
+    const auto emit = [&](const Reference& piece) {
+      out.push_back(piece);
+      // Told to the others now and then, or each thread might make as many as all together may.
+      if (out.size() - told >= kTellEvery) total += out.size() - std::exchange(told, out.size());
+      return total.load(std::memory_order_relaxed) <= most;
+    };
+    for (size_t i = begin; i < end && total.load(std::memory_order_relaxed) <= most; ++i) split(whole[i], emit);
+    total += out.size() - told;
+  });
+  if (total > most) return std::nullopt;
+  std::vector<Reference> all;
+  all.reserve(total);
+  for (std::vector<Reference>& block : blocks) {
+    all.insert(all.end(), block.begin(), block.end());
+    std::vector<Reference>().swap(block);
+  }
+  return all;
+}
+
+}  // namespace kerf

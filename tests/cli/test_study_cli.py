@@ -1,0 +1,192 @@
+"""kerf study as a user meets it. KERF names the program."""
+
+import csv
+import json
+import math
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+KERF = os.environ["KERF"]
+KEYS = {"scene", "triangles", "row", "rays", "references_per_triangle", "build_seconds", "nodes_per_ray",
+        "triangles_per_ray", "boxes_per_ray", "trace_seconds", "speedup", "bytes", "depth", "sah_cost",
+        "end_point_overlap", "hits"}
+QUICK = ["--size", "32x24", "--repeat", "2"]
+
+
+def write_slivers(path, count, seed=1):
+    """Long thin triangles between random points, as an OBJ."""
+    rng = random.Random(seed)
+    lines = []
+    for i in range(count):
+        a = [rng.uniform(-10, 10) for _ in range(3)]
+        b = [x + rng.uniform(-6, 6) for x in a]
+        c = [(x + y) / 2 + rng.uniform(-0.1, 0.1) for x, y in zip(a, b)]
+        lines += ["v " + " ".join(f"{x:.5f}" for x in p) for p in (a, b, c)]
+        lines.append(f"f {3 * i + 1} {3 * i + 2} {3 * i + 3}")
+    path.write_text("\n".join(lines) + "\n")
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("KERF_SCENES", raising=False)
+    write_slivers(tmp_path / "slivers.obj", 500)
+    return tmp_path
+
+
+def kerf(*arguments, **options):
+    return subprocess.run([KERF, *map(str, arguments)], capture_output=True, text=True, timeout=300, **options)
+
+
+def study(*arguments):
+    result = kerf("study", *arguments, *QUICK, "--json", "-", "--quiet")
+    assert result.returncode == 0, result.stderr
+    return json.loads(result.stdout)
+
+
+def test_help_has_an_example():
+    result = kerf("study", "--help")
+    assert result.returncode == 0
+    assert "kerf study --paper" in result.stdout
+
+
+def test_the_table_is_printed_and_files_are_written():
+    result = kerf("study", "slivers.obj", *QUICK, "--rows", "binned_sah,early_split(budget=2)+binned_sah", "--csv",
+                  "out.csv", "--json", "out.json", "--html", "out.html")
+    assert result.returncode == 0, result.stderr
+    assert "T_build" in result.stdout and "early_split(budget=2)+binned_sah" in result.stdout
+    figures = json.load(open("out.json"))
+    assert len(figures) == 2 and all(KEYS <= row.keys() for row in figures)
+    rows = list(csv.DictReader(open("out.csv")))
+    assert [row["row"] for row in rows] == [row["row"] for row in figures]
+    for text, figure in zip(rows, figures):
+        assert float(text["nodes_per_ray"]) == figure["nodes_per_ray"]
+        assert int(text["hits"]) == figure["hits"] > 0
+    page = open("out.html").read()
+    assert "early_split(budget=2)" in page and page.startswith("<!")
+    assert figures[0]["speedup"] == 1
+    assert figures[1]["references_per_triangle"] == pytest.approx(2, rel=0.01)
+
+
+def test_counts_repeat_exactly_for_any_number_of_threads():
+    def counts(*more):
+        kinds = "primary,shadow,ambient_occlusion,diffuse"
+        rows = study("slivers.obj", "--rows", "binned_sah,early_split(budget=2)+sweep_sah", "--rays", kinds, *more)
+        assert len(rows) == 8
+        timed = {"build_seconds", "trace_seconds", "speedup", "build_seconds_spread", "trace_seconds_spread"}
+        return [{key: value for key, value in row.items() if key not in timed} for row in rows]
+    assert counts() == counts("--threads", "1") == counts("--threads", "3")
+
+
+def test_rows_that_do_not_finish_say_so_and_the_others_go_on():
+    rows = study("slivers.obj", "--rows", "binned_sah(leaf=1,depth=2),binned_sah")
+    assert [row["finished"] for row in rows] == [False, True]
+    assert "depth" in rows[0]["why_not"]
+    result = kerf("study", "slivers.obj", *QUICK, "--rows", "binned_sah,sweep_sah", "--limit-gigabytes", "1e-6")
+    assert result.returncode == 0
+    assert result.stdout.count("not finished") == 2
+
+
+def test_rays_are_saved_and_loaded():
+    first = study("slivers.obj", "--rays", "primary,diffuse", "--rows", "binned_sah", "--save-rays", "rays.npy")
+    second = study("slivers.obj", "--rows", "binned_sah", "--load-rays", "rays.npy")
+    assert [(r["rays"], r["hits"], r["nodes_per_ray"]) for r in first] == \
+           [(r["rays"], r["hits"], r["nodes_per_ray"]) for r in second]
+    numpy = pytest.importorskip("numpy")
+    rays = numpy.load("rays.npy")
+    assert set(rays["kind"]) == {0, 3} and rays["origin"].shape[1] == 3
+    plain = numpy.concatenate([rays["origin"], rays["direction"]], axis=1)[rays["kind"] == 0]
+    for dtype in ("<f4", "<f8"):
+        numpy.save("plain.npy", plain.astype(dtype))
+        loaded = study("slivers.obj", "--rows", "binned_sah", "--load-rays", "plain.npy")
+        assert loaded[0]["rays"] == "loaded" and loaded[0]["hits"] == first[0]["hits"]
+    numpy.save("wrong.npy", plain[:, :5])
+    result = kerf("study", "slivers.obj", "--load-rays", "wrong.npy")
+    assert result.returncode == 1 and "(n, 6)" in result.stderr
+
+
+def test_a_sweep_is_a_curve_over_the_area_limit():
+    rows = study("slivers.obj", "--sweep", "sa_max")
+    ratios = [row["references_per_triangle"] for row in rows]
+    assert len(rows) >= 10 and ratios == sorted(ratios) and ratios[0] == 1 and ratios[-1] > 9
+    assert rows[0]["sa_max"] == "inf" and all(row["sa_max"] > 0 for row in rows[1:])
+
+
+def test_a_camera_list_beside_a_model_is_used_and_words_go_before_it(folder):
+    plain = study("slivers.obj", "--rows", "binned_sah")
+    (folder / "cameras.tsv").write_text("scene\tcamera\tex\tey\tez\tlx\tly\tlz\tux\tuy\tuz\tfov\n"
+                                        "slivers\t1\t0\t0\t2000\t0\t0\t0\t0\t1\t0\t45\n")
+    far = study("slivers.obj", "--rows", "binned_sah")
+    assert far[0]["hits"] < plain[0]["hits"]
+    near = study("slivers.obj", "--rows", "binned_sah", "--eye", "0,0,30", "--look-at", "0,0,0")
+    assert near[0]["hits"] > far[0]["hits"]
+    (folder / "cameras.tsv").write_text("names\nslivers 1 2\n")
+    result = kerf("study", "slivers.obj", *QUICK)
+    assert result.returncode == 1 and "cameras.tsv:2" in result.stderr
+
+
+def test_a_turned_scene_has_a_name_of_its_own():
+    rows = study("slivers.obj", "--rows", "binned_sah", "--turn", "xyz")
+    assert rows[0]["scene"] == "slivers turned xyz"
+
+
+def test_growth_goes_by_tens_and_all_rows_are_everything_in_the_menu():
+    rows = study("--growth", "soup", "--up-to", "1e4", "--rows", "binned_sah,sweep_sah")
+    assert [row["scene"] for row in rows] == ["soup 1000"] * 2 + ["soup 10000"] * 2
+    assert rows[2]["triangles"] == pytest.approx(10000, rel=0.05)
+    names = {row["row"] for row in study("slivers.obj", "--rows", "all")}
+    menu = json.loads(kerf("list", "--json", "-").stdout)
+    for entry in menu:
+        if entry["kind"] in ("splitter", "builder", "layout", "structure") and entry["name"] not in ("bvh2", "brute_force"):
+            assert any(entry["name"] in name for name in names), entry["name"]
+
+
+@pytest.mark.parametrize("words, sentence", [
+    (["--growth", "soop"], "soup"),
+    (["--growth", "soup", "--paper"], "--paper"),
+    ([], "give a scene"),
+    (["slivers.obj", "--paper"], "give no input"),
+    (["slivers.obj", "--rows", "binned_shah"], "binned_sah"),
+    (["slivers.obj", "--rays", "primry"], "did you mean 'primary'"),
+    (["slivers.obj", "--turn", "yx"], "turn"),
+    (["slivers.obj", "--sweep", "samax"], "did you mean 'sa_max'"),
+    (["slivers.obj", "--sweep", "sa_max", "--rows", "binned_sah"], "give no others"),
+    (["slivers.obj", "slivers.obj", "--save-rays", "x.npy"], "one input"),
+    (["slivers.obj", "--size", "0x3"], "--size"),
+    (["slivers.obj", "--limit-seconds", "-1"], "limit-seconds"),
+    (["slivers.obj", "--repeats", "3"], "--repeat"),
+])
+def test_mistakes_in_the_words_end_with_2_and_write_nothing(folder, words, sentence):
+    before = sorted(os.listdir(folder))
+    result = kerf("study", *words)
+    assert result.returncode == 2 and sentence in result.stderr, result.stderr
+    assert result.stdout == "" and sorted(os.listdir(folder)) == before
+
+
+def test_bad_input_ends_with_1(folder):
+    assert kerf("study", "missing.obj").returncode == 1
+    assert kerf("study", "slivers.obj", "--json", "no/such/folder.json").returncode == 1
+    assert kerf("study", "slivers.obj", "--load-rays", "slivers.obj").returncode == 1
+
+
+def test_an_interrupt_writes_what_is_finished_and_ends_with_130(folder):
+    write_slivers(folder / "many.obj", 20000)
+    process = subprocess.Popen([KERF, "study", "many.obj", "--rows", "brute_force,binned_sah", "--size", "400x400",
+                                "--json", "out.json", "--repeat", "1000"], stdout=subprocess.PIPE)
+    time.sleep(3)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(timeout=60) == 130
+    rows = json.load(open("out.json"))
+    assert len(rows) == 2
+    assert all(row["finished"] or row["why_not"] for row in rows)
+    assert all(math.isfinite(row["trace_seconds"]) for row in rows if row["finished"])
+
+
+if __name__ == "__main__":
+    sys.exit(pytest.main([__file__, *sys.argv[1:]]))
