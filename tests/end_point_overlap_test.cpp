@@ -227,8 +227,8 @@ TEST(EndPointOverlap, LeavesCountTheirSlots) {
 TEST(EndPointOverlap, LeavesThatLieApartHaveNone) {
   std::vector<Vec3f> vertices;
   for (int i = 0; i < 64; ++i) {
-    const Vec3f at{static_cast<float>(3 * (i % 4)), static_cast<float>(3 * (i / 4 % 4)),
-                   static_cast<float>(3 * (i / 16))};
+    const int column = i % 4, row = i / 4 % 4, layer = i / 16;
+    const Vec3f at = 3.0F * Vec3f{static_cast<float>(column), static_cast<float>(row), static_cast<float>(layer)};
     vertices.insert(vertices.end(), {at, at + Vec3f{1, 0, 1}, at + Vec3f{0, 1, 1}});
   }
   EXPECT_EQ(overlap_of(Corners(vertices)), 0);
