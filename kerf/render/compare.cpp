@@ -4,8 +4,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "kerf/render/frame.h"
-#include "kerf/render/sampler.h"
+#include "kerf/render/picture_rays.h"
 
 namespace kerf {
 namespace {
@@ -13,31 +12,11 @@ namespace {
 constexpr double kPixels = 3e4;
 constexpr int kRuns = 5;
 
-/// Camera rays, then a cosine-distributed one from each of their hits.
-std::vector<Ray> picture_rays(const Scene& scene, const Camera& camera, double aspect) {
+/// Of a picture of kPixels.
+std::vector<Ray> rays_of_picture(const Scene& scene, const Camera& camera, double aspect) {
   const auto width = static_cast<uint32_t>(std::max(1.0, std::sqrt(kPixels * aspect)));
   const auto height = static_cast<uint32_t>(std::max(1.0, std::sqrt(kPixels / aspect)));
-  const CameraRays pixel(camera, width, height);
-  std::vector<Ray> rays;
-  for (uint32_t y = 0; y < height; ++y) {
-    for (uint32_t x = 0; x < width; ++x) rays.push_back(pixel.center(x, y));
-  }
-  const size_t count = rays.size();
-  for (size_t i = 0; i < count; ++i) {
-    const Hit hit = scene.closest_hit(rays[i]);
-    if (!hit) continue;
-    Vec3f normal = scene.normal(hit);
-    if (dot(normal, rays[i].direction) > 0) normal = -normal;
-    const SurfacePoint point{to_double(rays[i].origin) + to_double(rays[i].direction) * double{hit.t},
-                             to_double(normal), largest(abs(to_double(rays[i].origin)))};
-    Ray ray;
-    Sampler sampler(1, static_cast<uint32_t>(i), 0);
-    ray.direction = Frame(normal).to_world(cosine_direction(sampler.next_pair()));
-    ray.origin = offset_origin(point, ray.direction);
-    ray.mask = kIndirectMask;
-    rays.push_back(ray);
-  }
-  return rays;
+  return picture_rays(scene, camera, width, height).rays;
 }
 
 double seconds_of(const Scene& scene, std::span<const Ray> rays, std::span<Hit> hits) {
@@ -53,7 +32,7 @@ std::vector<StructureCost> compare_structures(const SceneDescription& descriptio
   std::vector<Scene> scenes;
   for (const BuildOptions& options : structures) scenes.push_back(build_scene(description, options));
   if (scenes.empty()) return {};
-  const std::vector<Ray> rays = picture_rays(scenes.front(), camera, aspect);
+  const std::vector<Ray> rays = rays_of_picture(scenes.front(), camera, aspect);
   std::vector<StructureCost> costs;
   for (const Scene& scene : scenes) {
     TraceCounts counts;

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "kerf/base/error.h"
-#include "kerf/geometry/ray_sphere.h"
 #include "kerf/render/camera.h"
 #include "kerf/render/color.h"
 #include "kerf/render/frame.h"
@@ -158,8 +157,8 @@ Surface RenderScene::surface(const Ray& ray, const Hit& hit) const {
   Surface surface;
   surface.material = &material(hit.geometry, hit.primitive);
   surface.albedo = surface.material->albedo;
+  surface.point = hit_point(scene_.geometries()[hit.geometry], ray, hit);
   if (const auto* mesh = std::get_if<Mesh>(&object.shape)) {
-    surface.point = triangle_point(view_of(*mesh).triangle(hit.primitive), hit.u, hit.v);
     surface.geometric_normal = to_float(surface.point.normal);
     surface.shading_normal = interpolated_normal(*mesh, hit, surface.geometric_normal);
     if (dot(surface.shading_normal, surface.geometric_normal) < 0) {
@@ -170,13 +169,6 @@ Surface RenderScene::surface(const Ray& ray, const Hit& hit) const {
       surface.albedo = scaled(surface.albedo, texture_color(texture, interpolated_uv(*mesh, hit)));
     }
     return surface;
-  }
-  if (const auto* sphere = std::get_if<Sphere>(&object.shape)) {
-    // Of the two ways to say where the hit is, the one with less rounding: t for near ones, u and v for far ones.
-    const Vec3d to_hit = to_double(ray.origin) - to_double(sphere->center) + to_double(ray.direction) * double{hit.t};
-    surface.point = sphere_point(*sphere, hit.t < sphere->radius ? to_hit : detail::from_octahedral(hit.u, hit.v));
-  } else {
-    surface.point = parallelogram_point(*std::get_if<Parallelogram>(&object.shape), hit.u, hit.v);
   }
   surface.geometric_normal = surface.shading_normal = to_float(surface.point.normal);
   return surface;

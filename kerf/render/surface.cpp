@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kerf/geometry/ray_sphere.h"
 #include "kerf/render/frame.h"
 
 namespace kerf {
@@ -33,6 +34,19 @@ SurfacePoint sphere_point(const Sphere& sphere, Vec3d outward) {
   point.position = center + point.normal * double{sphere.radius};
   point.extent = largest(abs(center)) + sphere.radius;
   return point;
+}
+
+SurfacePoint hit_point(const Geometry& geometry, const Ray& ray, const Hit& hit) {
+  if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) {
+    return triangle_point(mesh->triangle(hit.primitive), hit.u, hit.v);
+  }
+  if (const auto* shapes = std::get_if<Strided<Parallelogram>>(&geometry.shapes)) {
+    return parallelogram_point((*shapes)[hit.primitive], hit.u, hit.v);
+  }
+  const Sphere sphere = std::get<Strided<Sphere>>(geometry.shapes)[hit.primitive];
+  // Of the two ways to say where the hit is, the one with less rounding: t for near ones, u and v for far ones.
+  const Vec3d to_hit = to_double(ray.origin) - to_double(sphere.center) + to_double(ray.direction) * double{hit.t};
+  return sphere_point(sphere, hit.t < sphere.radius ? to_hit : detail::from_octahedral(hit.u, hit.v));
 }
 
 Vec3f offset_origin(const SurfacePoint& point, Vec3f direction) {

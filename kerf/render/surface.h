@@ -1,7 +1,9 @@
 #pragma once
 
 #include "kerf/base/vec3.h"
-#include "kerf/geometry/shapes.h"
+#include "kerf/geometry/geometry.h"
+#include "kerf/geometry/hit.h"
+#include "kerf/geometry/ray.h"
 #include "kerf/io/material.h"
 
 namespace kerf {
@@ -17,6 +19,9 @@ SurfacePoint triangle_point(const Triangle& triangle, double u, double v);
 SurfacePoint parallelogram_point(const Parallelogram& shape, double u, double v);
 /// The point in a direction from the sphere's centre, of any length.
 SurfacePoint sphere_point(const Sphere& sphere, Vec3d outward);
+
+/// Where a ray hit a primitive, from its shape: the ray and t are not exact enough to start another ray from.
+SurfacePoint hit_point(const Geometry& geometry, const Ray& ray, const Hit& hit);
 
 /// The origin of a ray that leaves a surface to the side of `direction`: the nearest floats to the point, moved along
 /// the normal by as much as the error of the position and its rounding can be, so that the ray does not meet the

@@ -7,6 +7,7 @@
 
 #include "kerf/base/error.h"
 #include "kerf/base/parallel.h"
+#include "kerf/render/picture_rays.h"
 #include "kerf/render/render_scene.h"
 #include "kerf/scene/pipeline.h"
 #include "kerf/study/end_point_overlap.h"

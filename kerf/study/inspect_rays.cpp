@@ -5,10 +5,6 @@
 #include <mutex>
 
 #include "kerf/base/parallel.h"
-#include "kerf/render/camera.h"
-#include "kerf/render/frame.h"
-#include "kerf/render/sampler.h"
-#include "kerf/render/surface.h"
 
 namespace kerf {
 namespace {
@@ -16,32 +12,6 @@ namespace {
 constexpr int kRuns = 3;
 constexpr size_t kLeastStretch = 4096;  // rays that are worth a tally of their own
 constexpr size_t kMostStretches = 8;    // of which each has one
-
-/// Where a ray hit something, from the shape itself: t alone is not exact enough to start another ray from.
-SurfacePoint point_of(const Geometry& geometry, const Ray& ray, const Hit& hit) {
-  if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) {
-    return triangle_point(mesh->triangle(hit.primitive), hit.u, hit.v);
-  }
-  if (const auto* shapes = std::get_if<Strided<Parallelogram>>(&geometry.shapes)) {
-    return parallelogram_point((*shapes)[hit.primitive], hit.u, hit.v);
-  }
-  const Sphere sphere = (*std::get_if<Strided<Sphere>>(&geometry.shapes))[hit.primitive];
-  return sphere_point(sphere,
-                      to_double(ray.origin) - to_double(sphere.center) + to_double(ray.direction) * double{hit.t});
-}
-
-/// From a hit to the side that the ray came from.
-Ray diffuse_ray(const Scene& scene, const Ray& from, const Hit& hit, uint32_t pixel) {
-  const SurfacePoint point = point_of(scene.geometries()[hit.geometry], from, hit);
-  Vec3f normal = to_float(point.normal);
-  if (dot(normal, from.direction) > 0) normal = -normal;
-  Sampler sampler(1, pixel, 0);
-  Ray ray;
-  ray.direction = Frame(normal).to_world(cosine_direction(sampler.next_pair()));
-  ray.origin = offset_origin(point, ray.direction);
-  ray.mask = kIndirectMask;
-  return ray;
-}
 
 PrimitiveTally zeros(const Scene& scene) {
   PrimitiveTally tally;
@@ -59,23 +29,6 @@ void add_to(RayTally& sum, const TraceCounts& more) {
 }
 
 }  // namespace
-
-PictureRays picture_rays(const Scene& scene, const Camera& camera, uint32_t width, uint32_t height) {
-  const CameraRays pixel(camera, width, height);
-  PictureRays picture;
-  picture.primary = size_t{width} * height;
-  picture.rays.resize(picture.primary);
-  std::vector<Hit> hits(picture.primary);
-  for (size_t i = 0; i < picture.primary; ++i) {
-    picture.rays[i] = pixel.center(static_cast<uint32_t>(i % width), static_cast<uint32_t>(i / width));
-  }
-  scene.closest_hit(picture.rays, hits);
-  for (size_t i = 0; i < picture.primary; ++i) {
-    if (!hits[i]) continue;
-    picture.rays.push_back(diffuse_ray(scene, Ray(picture.rays[i]), hits[i], static_cast<uint32_t>(i)));
-  }
-  return picture;
-}
 
 RayTally tally_rays(const Scene& scene, std::span<const Ray> rays) {
   const size_t stretches =
