@@ -199,6 +199,22 @@ TEST(UniformGrid, CellsGetWhatReachesIntoThemOnly) {
   EXPECT_LE(count, 3 + 1);
 }
 
+TEST(CellCut, APartThatOnlyTouchesThePlaneIsLeftToTheOtherSide) {
+  const Box3f box{{0, 0, 0}, {2, 1, 1}}, below{{0, 0, 0}, {1, 1, 1}}, above{{1, 0, 0}, {2, 1, 1}},
+      flat{{1, 0, 0}, {1, 1, 1}};
+  const auto sides = [&](const Box3f& low, const Box3f& high) {
+    const CutBoxes cut = settled({low, high}, box, kX, 1);
+    return std::pair(!cut.below.is_empty(), !cut.above.is_empty());
+  };
+  EXPECT_EQ(sides(below, above), std::pair(true, true));
+  EXPECT_EQ(sides(flat, above), std::pair(false, true));
+  EXPECT_EQ(sides(below, flat), std::pair(true, false));
+  EXPECT_EQ(sides(flat, flat), std::pair(false, true));
+  EXPECT_EQ(sides(flat, {}), std::pair(true, false));
+  EXPECT_EQ(sides({}, flat), std::pair(false, true));
+  EXPECT_EQ(sides({}, {}), std::pair(true, true));
+}
+
 TEST(UniformGrid, TheCapMakesItCoarser) {
   const RandomTriangles triangles(3000, 5, 1);
   const std::vector<Geometry> geometries{triangles.geometry()};

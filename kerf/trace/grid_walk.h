@@ -106,19 +106,18 @@ class GridWalk {
     }
   };
 
-  /// Enters the next slab along axis a, at t.
-  template <uint32_t a, class Visit>
+  /// Enters the next slab along axis kA, at t.
+  template <uint32_t kA, class Visit>
   bool step(float t, Visit&& visit) {
-    constexpr uint32_t b = (a + 1) % 3, c = (a + 2) % 3;
-    axes_[a].enter_next();
-    axes_[b].leave_before(t);
-    axes_[c].leave_before(t);
-    const uint32_t k = axes_[a].last;
-    if (axes_[b].first == axes_[b].last && axes_[c].first == axes_[c].last) {
-      return visit(static_cast<size_t>(axes_[a].cell_part(k) + axes_[b].cell_part(axes_[b].last) +
-                                       axes_[c].cell_part(axes_[c].last)));
+    constexpr uint32_t kB = (kA + 1) % 3, kC = (kA + 2) % 3;
+    Slabs &a = axes_[kA], &b = axes_[kB], &c = axes_[kC];
+    a.enter_next();
+    b.leave_before(t);
+    c.leave_before(t);
+    if (b.first == b.last && c.first == c.last) {
+      return visit(static_cast<size_t>(a.cell_part(a.last) + b.cell_part(b.last) + c.cell_part(c.last)));
     }
-    return visit_range(k, k, axes_[b].first, axes_[b].last, axes_[c].first, axes_[c].last, a, b, c, visit);
+    return visit_range(a.last, a.last, b.first, b.last, c.first, c.last, kA, kB, kC, visit);
   }
 
   template <class Visit>

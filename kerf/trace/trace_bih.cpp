@@ -14,6 +14,17 @@ namespace {
 struct Waiting {
   uint32_t node;
   float entry, exit;
+
+  /// It begins or ends at a plane; a NaN from 0 * infinity bounds nothing.
+  void begin_at(float plane, const BoxRay& ray, uint32_t axis) {
+    const float t = (plane - ray.origin_near[axis]) * ray.inverse[axis];
+    entry = t > entry ? t : entry;
+  }
+  void end_at(float plane, const BoxRay& ray, uint32_t axis) {
+    const float t = (plane - ray.origin_far[axis]) * ray.inverse[axis];
+    exit = t < exit ? t : exit;
+  }
+  bool is_reached(float limit) const { return entry <= exit && entry <= limit; }
 };
 
 }  // namespace
@@ -33,43 +44,35 @@ Hit BihTracer::trace(const Ray& ray, Counts& counts) const {
   if (!box_ray.enters(sides, prepared.t_min, best.t, current.entry)) return {};
   uint32_t near_side[3];
   for (uint32_t a = 0; a < 3; ++a) {
-    const float t = (sides[box_ray.far_side[a]] - box_ray.origin_far[a]) * box_ray.inverse[a];
-    current.exit = t < current.exit ? t : current.exit;
     near_side[a] = prepared.direction_d[a] < 0 ? 1 : 0;
+    current.end_at(sides[box_ray.far_side[a]], box_ray, a);
   }
   Waiting stack[kMaxDepth];  // one child waits for each pair above the current node
   uint32_t waiting = 0;
   while (true) {
     counts.count_nodes(1);
     const BihNode& node = bih.nodes[current.node];
+    counts.count_boxes(node.children());
     if (node.is_single()) {
-      counts.count_boxes(1);
       const uint32_t axis = node.axis(), near = near_side[axis];
-      const float enter = (node.clip(near) - box_ray.origin_near[axis]) * box_ray.inverse[axis];
-      const float leave = (node.clip(1 - near) - box_ray.origin_far[axis]) * box_ray.inverse[axis];
-      current.entry = enter > current.entry ? enter : current.entry;
-      current.exit = leave < current.exit ? leave : current.exit;
-      if (current.entry <= current.exit && current.entry <= best.t) {
-        current.node = node.child();
-        continue;
-      }
+      current.node = node.child();
+      current.begin_at(node.clip(near), box_ray, axis);
+      current.end_at(node.clip(1 - near), box_ray, axis);
+      if (current.is_reached(best.t)) continue;
     } else if (!node.is_leaf()) {
-      counts.count_boxes(2);
       const uint32_t axis = node.axis(), near = near_side[axis];
-      const float leave_near = (node.clip(near) - box_ray.origin_far[axis]) * box_ray.inverse[axis];
-      const float enter_far = (node.clip(1 - near) - box_ray.origin_near[axis]) * box_ray.inverse[axis];
-      // A NaN from 0 * infinity bounds nothing.
-      const float near_exit = leave_near < current.exit ? leave_near : current.exit;
-      const float far_entry = enter_far > current.entry ? enter_far : current.entry;
-      const bool enters_far = far_entry <= current.exit && far_entry <= best.t;
-      const Waiting far{node.child() + 1 - near, far_entry, current.exit};
-      if (current.entry <= near_exit) {
+      Waiting far = current;
+      far.node = node.child() + 1 - near;
+      far.begin_at(node.clip(1 - near), box_ray, axis);
+      current.node = node.child() + near;
+      current.end_at(node.clip(near), box_ray, axis);
+      const bool reaches_far = far.is_reached(best.t);
+      if (current.is_reached(best.t)) {
         assert(waiting < kMaxDepth);
-        if (enters_far) stack[waiting++] = far;
-        current = {node.child() + near, current.entry, near_exit};
+        if (reaches_far) stack[waiting++] = far;
         continue;
       }
-      if (enters_far) {
+      if (reaches_far) {
         current = far;
         continue;
       }

@@ -23,9 +23,9 @@ struct Waiting {
 struct Crossings {
   float enter_far[3], leave_near[3];
   float middle[3];
-  uint32_t reached;  ///< a bit for each octant, in the ray's order, that the ray may be in
+  uint32_t reached = 0xFF;  ///< a bit for each octant, in the ray's order, that the ray may be in
 
-  Crossings(const Waiting& cell, const BoxRay& ray, uint32_t axes, float limit) : reached(0xFF) {
+  Crossings(const Waiting& cell, const BoxRay& ray, uint32_t axes, float limit) {
     constexpr uint32_t kFarHalves[3] = {0xAA, 0xCC, 0xF0};
     for (uint32_t a = 0; a < 3; ++a) {
       middle[a] = division(cell.lower[a], cell.upper[a], a, axes);

@@ -20,8 +20,7 @@ uint64_t word_hash(std::span<const uint32_t> words, uint64_t seed = 0);
 template <class T>
 uint64_t data_hash(std::span<const T> data, uint64_t seed = 0) {
   static_assert(sizeof(T) % sizeof(uint32_t) == 0 && std::is_trivially_copyable_v<T>);
-  return word_hash({reinterpret_cast<const uint32_t*>(data.data()), data.size() * (sizeof(T) / sizeof(uint32_t))},
-                   seed);
+  return word_hash({reinterpret_cast<const uint32_t*>(data.data()), data.size_bytes() / sizeof(uint32_t)}, seed);
 }
 
 }  // namespace kerf
