@@ -65,6 +65,11 @@ def pages(tmp_path_factory):
     return {kind: folder / f"{kind}.html" for kind in KINDS}
 
 
+@pytest.fixture(scope="module")
+def profile(tmp_path_factory):
+    return tmp_path_factory.mktemp("profile")
+
+
 def chromium(page, profile, *arguments, width=1300, height=1000):
     """What the browser writes to standard output, and the lines of its console."""
     result = subprocess.run(
@@ -78,17 +83,29 @@ def chromium(page, profile, *arguments, width=1300, height=1000):
     return result.stdout.decode(), [line for line in log.splitlines() if "CONSOLE" in line]
 
 
-def probed(page, tmp_path, *arguments, script="", **size):
+def probed(page, profile, script="", **size):
     """What PROBE finds in the page, after `script` ran in it; and the lines of the console."""
-    copy = tmp_path / "probed.html"
+    copy = page.with_name("probed.html")
     text = page.read_text(encoding="utf-8")
     assert text.count("</body>") == 1
     copy.write_text(text.replace("</body>", f"<script>{script}{PROBE}</script></body>"), encoding="utf-8")
-    dom, console = chromium(copy, tmp_path / "profile", "--dump-dom", *arguments, **size)
+    dom, console = chromium(copy, profile, "--dump-dom", **size)
     found = re.search(r'<pre id="probe">(.*?)</pre>', dom, re.S)
     assert found, dom[-2000:]
     text = found[1].replace("&lt;", "<").replace("&gt;", ">").replace("&nbsp;", " ").replace("&amp;", "&")
     return json.loads(text), console
+
+
+@pytest.fixture(scope="module")
+def look(pages, profile):
+    """probed() of an unchanged page, once for each width."""
+    known = {}
+
+    def at(kind, width):
+        if (kind, width) not in known:
+            known[kind, width] = probed(pages[kind], profile, width=width)
+        return known[kind, width]
+    return at
 
 
 def pixels_of(path):
@@ -141,16 +158,16 @@ def test_is_well_formed_xml_without_addresses(pages, kind):
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("width", [1300, 390])
-def test_opens_without_a_word_and_without_network(pages, tmp_path, kind, width):
-    found, console = probed(pages[kind], tmp_path, width=width)
+def test_opens_without_a_word_and_without_network(look, kind, width):
+    found, console = look(kind, width)
     assert console == []
     assert found["loaded"] == []
     assert found["page"][0] <= found["page"][1], "the page scrolls sideways"
     assert found["wide"] == []
 
 
-def test_has_all_tables_charts_and_pictures(pages, tmp_path):
-    found, _ = probed(pages["full"], tmp_path)
+def test_has_all_tables_charts_and_pictures(look):
+    found, _ = look("full", 1300)
     assert found["tables"] == 1 + 4 + 1 + 1  # overview, kinds of rays of scenes, sweep, growth
     assert found["charts"] == 4 * 5 + 3 + 4
     assert found["texts"] > 800
@@ -160,14 +177,14 @@ def test_has_all_tables_charts_and_pictures(pages, tmp_path):
 
 @pytest.mark.parametrize("kind", ["full", "one", "odd"])
 @pytest.mark.parametrize("width", [1300, 390])
-def test_labels_neither_leave_charts_nor_cover_each_other(pages, tmp_path, kind, width):
-    found, _ = probed(pages[kind], tmp_path, width=width)
+def test_labels_neither_leave_charts_nor_cover_each_other(look, kind, width):
+    found, _ = look(kind, width)
     assert found["texts"] > 0
     assert found["outside"] == []
     assert found["covered"] == []
 
 
-def test_the_probe_notices(pages, tmp_path):
+def test_the_probe_notices(pages, profile):
     spoil = """
     const svg = document.querySelector('figure svg');
     for (const x of [370, 372]) {
@@ -177,20 +194,20 @@ def test_the_probe_notices(pages, tmp_path):
     document.querySelector('h1').style.width = '3000px';
     console.error('a fault');
     """
-    found, console = probed(pages["one"], tmp_path, script=spoil)
+    found, console = probed(pages["one"], profile, script=spoil)
     assert found["outside"] == ["much too long"] * 2
     assert found["covered"] == ["much too long | much too long"]
     assert found["page"][0] > found["page"][1] and found["wide"]
     assert len(console) == 1
 
 
-def test_nothing_can_be_fetched(pages, tmp_path):
+def test_nothing_can_be_fetched(pages, profile):
     fetch = "const i = new Image(); i.src = 'http://127.0.0.1:9/x.png'; document.body.append(i);"
-    _, console = probed(pages["one"], tmp_path, script=fetch)
+    _, console = probed(pages["one"], profile, script=fetch)
     assert any("Content Security Policy" in line for line in console)
 
 
-def test_tables_are_sorted_by_a_click(pages, tmp_path):
+def test_tables_are_sorted_by_a_click(pages, profile, tmp_path):
     sort = """
     const table = document.querySelector('#scene-1 table');
     const order = () => [...table.tBodies[0].rows].map(row => Number(row.dataset.row));
@@ -205,7 +222,7 @@ def test_tables_are_sorted_by_a_click(pages, tmp_path):
     copy = tmp_path / "sorted.html"
     copy.write_text(pages["full"].read_text(encoding="utf-8").replace("</body>", f"<script>{sort}</script></body>"),
                     encoding="utf-8")
-    dom, console = chromium(copy, tmp_path / "profile", "--dump-dom")
+    dom, console = chromium(copy, profile, "--dump-dom")
     assert console == []
     before, up, up_times, up_word, down, down_times, down_word, back = json.loads(
         re.search(r'data-sorted="([^"]*)"', dom)[1].replace("&quot;", '"'))
@@ -216,22 +233,22 @@ def test_tables_are_sorted_by_a_click(pages, tmp_path):
     assert (up_word, down_word) == ("ascending", "descending")
 
 
-def test_is_whole_without_a_script(pages, tmp_path):
+def test_is_whole_without_a_script(pages, profile, tmp_path):
     page = tmp_path / "still.html"
     text = pages["full"].read_text(encoding="utf-8")
     page.write_text(text[:text.index("<script>")] + text[text.index("</script>") + 9:], encoding="utf-8")
-    found, _ = probed(page, tmp_path)
+    found, _ = probed(page, profile)
     assert (found["tables"], found["charts"], found["buttons"]) == (7, 27, 0)
 
 
 @pytest.mark.parametrize("dark", [False, True])
-@pytest.mark.parametrize("width", [1300, 390])
-def test_is_seen(pages, tmp_path, dark, width):
+@pytest.mark.parametrize("width", [900, 390])
+def test_is_seen(pages, profile, tmp_path, dark, width):
     picture = tmp_path / "page.png"
     scheme = [f"--blink-settings=preferredColorScheme={0 if dark else 1}"]
-    chromium(pages["full"], tmp_path / "profile", f"--screenshot={picture}", *scheme, width=width, height=900)
+    chromium(pages["full"], profile, f"--screenshot={picture}", *scheme, width=width, height=600)
     found_width, height, rows = pixels_of(picture)
-    assert (found_width, height) == (width, 900)
+    assert (found_width, height) == (width, 600)
     background = rows[2][2]
     assert (sum(background) < 150) == dark, background
     other = sum(pixel != background for row in rows for pixel in row)
@@ -266,9 +283,9 @@ def test_colors_stand_out_in_both_modes(pages):
             assert contrast(mode[part], mode["page"]) >= 3, part
 
 
-def test_prints(pages, tmp_path):
+def test_prints(pages, profile, tmp_path):
     paper = tmp_path / "page.pdf"
-    _, console = chromium(pages["full"], tmp_path / "profile", f"--print-to-pdf={paper}", "--no-pdf-header-footer")
+    _, console = chromium(pages["full"], profile, f"--print-to-pdf={paper}", "--no-pdf-header-footer")
     assert console == []
     data = paper.read_bytes()
     assert data.startswith(b"%PDF") and len(re.findall(rb"/Type\s*/Page\b", data)) >= 4

@@ -46,20 +46,22 @@ void place_logarithmic(Axis& axis, int ticks) {
     axis.most *= 2;
   }
   const double first = std::floor(std::log10(axis.least)), last = std::ceil(std::log10(axis.most));
+  std::vector<double> marks;
+  for (double e = first; e <= last; ++e) {
+    for (const double factor : {1.0, 2.0, 5.0}) marks.push_back(factor * power(e));
+  }
+  const auto begin = std::upper_bound(marks.begin() + 1, marks.end(), axis.least * (1 + 1e-9)) - 1;
+  const auto end = std::lower_bound(begin, marks.end() - 1, axis.most * (1 - 1e-9));
+  axis.least = *begin;
+  axis.most = *end;
   if (last - first <= 3) {
-    std::vector<double> marks;
-    for (double e = first; e <= last; ++e) {
-      for (const double factor : {1.0, 2.0, 5.0}) marks.push_back(factor * power(e));
-    }
-    auto begin = std::upper_bound(marks.begin(), marks.end(), axis.least * (1 + 1e-9));
-    auto end = std::lower_bound(marks.begin(), marks.end(), axis.most * (1 - 1e-9));
-    axis.ticks.assign(begin == marks.begin() ? begin : begin - 1, end == marks.end() ? end : end + 1);
+    axis.ticks.assign(begin, end + 1);
   } else {
     const double step = std::ceil((last - first) / ticks);
-    for (double e = first; e < last + step; e += step) axis.ticks.push_back(power(std::min(e, 300.0)));
+    for (double e = std::ceil(std::log10(axis.least) - 1e-9); power(e) <= axis.most * (1 + 1e-9); e += step) {
+      axis.ticks.push_back(power(e));
+    }
   }
-  axis.least = axis.ticks.front();
-  axis.most = axis.ticks.back();
 }
 
 }  // namespace

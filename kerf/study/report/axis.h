@@ -11,7 +11,7 @@ enum class AxisKind {
   logarithmic,  ///< only what is above 0 can stand on it
 };
 
-/// What an axis shows: where it begins and ends, both at marks.
+/// What an axis shows: where it begins and ends, both at 1, 2 or 5 times a power of ten or at a multiple of that.
 struct Axis {
   AxisKind kind = AxisKind::linear;
   double least = 0, most = 1;

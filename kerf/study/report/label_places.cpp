@@ -22,7 +22,7 @@ Area LabelPlaces::place(double x, double y, double width, double height) {
     const double middle_y = y + direction.second * (direction.first == 0 ? distance + height / 2 : distance * 0.8);
     return Area{middle_x - width / 2, middle_y - height / 2, middle_x + width / 2, middle_y + height / 2};
   };
-  Area found = at(kDistances[0], kDirections[0]);
+  const Area found = at(kDistances[0], kDirections[0]);
   for (const double distance : kDistances) {
     for (const auto& direction : kDirections) {
       const Area area = at(distance, direction);
@@ -45,10 +45,11 @@ std::vector<double> spread_column(const std::vector<double>& middles, double dis
     placed[i] = std::max(placed[i], least);
     least = placed[i] + distance;
   }
+  std::reverse(order.begin(), order.end());
   double most = bottom;
-  for (auto i = order.rbegin(); i != order.rend(); ++i) {
-    placed[*i] = std::min(placed[*i], most);
-    most = placed[*i] - distance;
+  for (const size_t i : order) {
+    placed[i] = std::min(placed[i], most);
+    most = placed[i] - distance;
   }
   return placed;
 }

@@ -50,14 +50,14 @@ table.overview { width: auto; }
 caption { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); white-space: nowrap; }
 th, td { padding: .38rem .45rem; text-align: right; vertical-align: top; border-bottom: 1px solid var(--grid); white-space: nowrap; }
 th[scope=row], thead th:first-child { text-align: left; position: sticky; left: 0; background: var(--page); z-index: 1; }
-th[scope=row] { font-weight: 400; white-space: normal; min-width: 13.5rem; padding-left: 2.2rem; line-height: 1.35; }
+th[scope=row] { font-weight: 400; white-space: normal; min-width: 13.5rem; padding-left: 2.6em; line-height: 1.35; }
 thead th { vertical-align: bottom; border-bottom: 2px solid var(--rule); line-height: 1.25; font-weight: 600; white-space: normal; }
 thead th > span, thead button > span { display: block; }
 .symbol { font-family: "Liberation Serif", "Times New Roman", Georgia, serif; font-style: italic; font-size: 1.12rem; font-weight: 600; white-space: nowrap; }
 .symbol.upright { font: inherit; font-weight: 600; }
 .symbol sub { font-size: .68em; font-style: normal; line-height: 0; }
-.words { font-size: .76rem; font-weight: 400; color: var(--soft); }
-.unit { font-size: .76rem; font-weight: 400; color: var(--soft); }
+.words { font-size: .9em; font-weight: 400; color: var(--soft); }
+.unit { font-size: .9em; font-weight: 400; color: var(--soft); }
 .unit::before { content: "in "; }
 th button { font: inherit; color: inherit; background: none; border: 0; padding: 0; margin: 0; text-align: inherit; cursor: pointer; }
 th button:hover .words, th button:focus-visible .words { color: var(--accent); text-decoration: underline; }
@@ -65,12 +65,12 @@ th[aria-sort] .words::after { content: " \2191"; color: var(--accent); }
 th[aria-sort=descending] .words::after { content: " \2193"; }
 td > span, td > strong { display: block; }
 td strong { color: var(--accent); font-weight: 700; }
-.range { font-size: .76rem; color: var(--soft); }
-.paper { font-size: .76rem; color: var(--paper-ink); line-height: 1.3; margin-top: .15rem; }
+.range { font-size: .9em; color: var(--soft); }
+.paper { font-size: .9em; color: var(--paper-ink); line-height: 1.3; margin-top: .15rem; }
 .paper .ratio { display: block; }
 table.limits th[scope=row] { min-width: 5rem; padding-left: .45rem; }
 wbr.narrow { display: none; }
-th .number { position: absolute; left: 0; width: 1.6rem; text-align: right; }
+th .number { position: absolute; left: 0; width: 2.1em; text-align: right; }
 .unfinished { text-align: left; white-space: normal; color: var(--soft); font-style: italic; }
 .unfinished b { color: var(--warn); font-style: normal; }
 .none { color: var(--soft); }
@@ -126,7 +126,7 @@ details { margin: 1rem 0; }
 summary { cursor: pointer; color: var(--accent); }
 .legend { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 340px), 1fr)); gap: 14px 30px; margin: 1rem 0; }
 .legend dt { font-weight: 600; }
-.legend dt .words { margin-left: .5em; }
+.legend dt .words { margin-left: .5em; font-size: .8rem; }
 .legend dd { margin: .1rem 0 0; font-size: .92rem; }
 .sources { padding-left: 1.2rem; max-width: 80ch; }
 @media (max-width: 640px) {
@@ -142,8 +142,8 @@ summary { cursor: pointer; color: var(--accent); }
   body { max-width: none; padding: 0; font-size: 10.5pt; }
   nav { display: none; }
   .scroll { overflow: visible; }
-  table { font-size: 7.4pt; } th, td { padding: 2pt 3pt; }
-  th[scope=row] { min-width: 0; position: relative; padding-left: 20pt; } thead th:first-child { position: static; }
+  table { font-size: 7.6pt; } th, td { padding: 2pt 3pt; }
+  th[scope=row] { min-width: 0; position: relative; } thead th:first-child { position: static; }
   figure, tr, .legend > div, .findings, .pictures figure { break-inside: avoid; }
   h2, h3, caption { break-after: avoid; }
   .charts { grid-template-columns: repeat(3, 1fr); gap: 10pt 14pt; }
