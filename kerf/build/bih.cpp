@@ -122,7 +122,9 @@ Bih build_bih(std::vector<Reference> references, const TopDownOptions& options, 
               const WorkLimit& limit) {
   if (references.empty()) return {};
   GridPlanes planes(std::move(references));
-  Bvh bvh = build_top_down(planes, options, limit);
+  TopDownOptions left_first = options;
+  left_first.larger_first = false;  // the first child is the one below the plane
+  Bvh bvh = build_top_down(planes, left_first, limit);
   Bih bih;
   bih.bounds = bvh.nodes[0].bounds();
   bih.nodes = Conversion(bvh, planes, cut_off).run();

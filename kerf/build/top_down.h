@@ -44,6 +44,7 @@ struct TopDownOptions {
   uint32_t max_depth = kMaxDepth;
   double inner_cost = 1;  ///< of visiting an inner node, against primitive_cost for a primitive test
   double primitive_cost = 1;
+  bool larger_first = true;  ///< the child with more references is the first; else the left one of the partition
 
   static constexpr OptionSpec kSpecs[] = {
       {"leaf", "references in a leaf, at most", 4, 1, 255, true},
@@ -53,7 +54,7 @@ struct TopDownOptions {
   };
   static TopDownOptions from(const OptionValues& values) {
     return {static_cast<uint32_t>(values["leaf"]), static_cast<uint32_t>(values["depth"]), values["inner_cost"],
-            values["primitive_cost"]};
+            values["primitive_cost"], true};
   }
 };
 
@@ -76,8 +77,7 @@ inline void check_depth(size_t references, const TopDownOptions& options) {
 
 /// The recursion. Every subset has its own stretch of the node array, so that subtrees can be built at once and the
 /// result does not depend on which came first: the nodes below the root of [begin, end) take at most
-/// 2 (end - begin) - 2 places from `place` on, the root's two children the first two of them. The child with more
-/// references is the first.
+/// 2 (end - begin) - 2 places from `place` on, the root's two children the first two of them.
 template <Partition P>
 class TopDown {
  public:
@@ -92,8 +92,8 @@ class TopDown {
     }
     const auto child = static_cast<uint32_t>(place);
     nodes_[node] = {subset.bounds.lower, child, subset.bounds.upper, 0};
-    // A ray that begins in both boxes visits the first child first: the one with more to hit.
-    const uint32_t left = halves->left.count() >= halves->right.count() ? 0 : 1;
+    // A ray that begins in both boxes visits the first child first: best the one with more to hit.
+    const uint32_t left = options_.larger_first && halves->right.count() > halves->left.count() ? 1 : 0;
     const auto build_left = [&] { build(halves->left, child + left, place + 2, depth + 1); };
     const auto build_right = [&] {
       build(halves->right, child + 1 - left, place + 2 * size_t{halves->left.count()}, depth + 1);

@@ -93,7 +93,7 @@ struct Walk {
   /// All nodes by a heap: the nearest first, whatever its parent. A node for whose children the heap has no room is
   /// walked by the stack: the heap is bounded and nothing is dropped.
   void best_first(Waiting current) const {
-    constexpr size_t kRoom = 256;
+    constexpr size_t kRoom = 32;
     const auto later = [](const Waiting& a, const Waiting& b) { return a.entry > b.entry; };
     std::array<Waiting, kRoom> heap;
     size_t waiting = 0;
