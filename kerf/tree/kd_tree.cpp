@@ -148,12 +148,17 @@ class Checker {
     check_cell(node.above(), above_plane(cell, axis, plane), std::move(above));
   }
 
+  /// What a builder does: cut the whole primitive to the box that is left of it.
   void add_parts(const Item& item, uint32_t axis, float plane, std::vector<Item>& below, std::vector<Item>& above) {
     const auto cut = [&](const Box3f& box) {
       return clipped_bounds(geometries_[item.geometry()], item.primitive(), box);
     };
-    const Box3f part_below = cut(below_plane(item.box, axis, plane)),
-                part_above = cut(above_plane(item.box, axis, plane));
+    const Box3f box_below = below_plane(item.box, axis, plane), box_above = above_plane(item.box, axis, plane);
+    Box3f part_below = cut(box_below), part_above = cut(box_above);
+    if (part_below.is_empty() && part_above.is_empty()) {  // only rounding can do that
+      part_below = box_below;
+      part_above = box_above;
+    }
     if (!part_below.is_empty()) below.push_back({item.name, part_below});
     if (!part_above.is_empty()) above.push_back({item.name, part_above});
   }
@@ -169,11 +174,12 @@ class Checker {
     }
     for (uint32_t slot = begin; slot < end; ++slot) {
       const LeafSlot& s = tree_.slots[slot];
-      const Geometry& geometry = geometries_[s.geometry()];
       if (stands_in(name_of(s), slot + 1, end)) fail(at("slot", slot) + " stands in its leaf twice");
-      const Box3f reach = boxes_only_ ? intersected(primitive_bounds(geometry, s.primitive), cell)
-                                      : clipped_bounds(geometry, s.primitive, cell);
-      if (reach.is_empty()) fail(at("slot", slot) + " does not reach into its cell");
+      const Box3f box = primitive_bounds(geometries_[s.geometry()], s.primitive);
+      if (intersected(box, cell).is_empty()) fail(at("slot", slot) + " does not reach into its cell");
+    }
+    if (!boxes_only_ && items.size() != end - begin) {
+      fail(at("node", number) + " has primitives that do not reach into its cell");
     }
   }
 

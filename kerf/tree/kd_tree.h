@@ -87,8 +87,8 @@ uint64_t tree_hash(const KdTree& tree);
 
 /// What is wrong with the tree, if anything: a link, a node or slot out of order, a plane not inside its cell, a path
 /// longer than `max_depth`, a slot that names no primitive, a primitive twice in a leaf, a wrong kRepeated; a primitive
-/// that reaches into a leaf and does not stand in it, judged by cutting every primitive at every plane; one in a leaf
-/// that it does not reach, or with `boxes_only`, that its box does not reach.
+/// that reaches into a leaf and does not stand in it, or the other way round, judged by cutting every primitive at
+/// every plane on its way down. With `boxes_only` a leaf may have any primitive whose box it meets.
 std::optional<std::string> find_fault(const KdTree& tree, std::span<const Geometry> geometries, bool boxes_only = false,
                                       uint32_t max_depth = kMaxDepth);
 

@@ -38,21 +38,21 @@ class KdStructure : public Structure {
 
 }  // namespace
 
-std::unique_ptr<const Structure> build_kd_sah(StructureInput input, const OptionValues& values) {
-  KdOptions options;
-  options.is_sampled = values.is_on("build");
-  options.clips = values.is_on("clip");
-  options.costs = {values["traversal_cost"], values["primitive_cost"], values["empty_bonus"]};
-  options.leaf_size = static_cast<uint32_t>(values["leaf"]);
-  options.max_depth = static_cast<uint32_t>(values["depth"]);
-  options.tries = values.is_on("trial");
-  options.cap = values["cap"];
-  options.samples = static_cast<uint32_t>(values["samples"]);
-  KdTree tree = build_kd_tree(std::move(input.references), geometry_clipper(input.geometries), options, input.limit);
+std::unique_ptr<const Structure> build_kd_sah(StructureInput input, const OptionValues& options) {
+  KdOptions kd;
+  kd.is_sampled = options.is_on("build");
+  kd.clips = options.is_on("clip");
+  kd.costs = {options["traversal_cost"], options["primitive_cost"], options["empty_bonus"]};
+  kd.leaf_size = static_cast<uint32_t>(options["leaf"]);
+  kd.max_depth = static_cast<uint32_t>(options["depth"]);
+  kd.tries = options.is_on("trial");
+  kd.cap = options["cap"];
+  kd.samples = static_cast<uint32_t>(options["samples"]);
+  KdTree tree = build_kd_tree(std::move(input.references), geometry_clipper(input.geometries), kd, input.limit);
   mark_repeated(tree, input.geometries);
-  const bool boxes_only = !options.clips;
-  const uint32_t max_depth = options.max_depth > 0 ? options.max_depth : kMaxDepth;
-  if (values.is_on("mailbox")) {
+  const bool boxes_only = !kd.clips;
+  const uint32_t max_depth = kd.max_depth > 0 ? kd.max_depth : kMaxDepth;
+  if (options.is_on("mailbox")) {
     return std::make_unique<const KdStructure<true>>(std::move(tree), input.geometries, boxes_only, max_depth);
   }
   return std::make_unique<const KdStructure<false>>(std::move(tree), input.geometries, boxes_only, max_depth);
