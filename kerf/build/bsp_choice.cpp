@@ -74,11 +74,12 @@ class Judge {
   /// Infinite where the plane is out of the question.
   double cost_of(const BspPlane& plane) const {
     constexpr double kNever = std::numeric_limits<double>::infinity();
-    const BspNode::Kind kind = kind_of(plane);
-    const BspPieces::Counts counts =
-        kind == BspNode::kOblique ? pieces_.count(plane) : pieces_.count_across(kind, static_cast<float>(plane.offset));
+    const BspPlane::Kind kind = plane.kind();
+    const BspPieces::Counts counts = kind == BspPlane::kOblique
+                                         ? pieces_.count(plane)
+                                         : pieces_.count_across(kind, static_cast<float>(plane.offset));
     if (uint64_t{counts.below} + counts.above > most_references_) return kNever;
-    const double plane_cost = kind == BspNode::kOblique ? options_.oblique_cost : options_.axis_cost;
+    const double plane_cost = kind == BspPlane::kOblique ? options_.oblique_cost : options_.axis_cost;
     // The parts' areas add up to at least that of the cell.
     const double least = plane_cost + options_.primitive_cost * std::min(counts.below, counts.above);
     if (least >= cost_of_leaf()) return kNever;
@@ -96,13 +97,6 @@ class Judge {
 };
 
 }  // namespace
-
-BspNode::Kind kind_of(const BspPlane& plane) {
-  for (uint32_t axis = 0; axis < 3; ++axis) {
-    if (plane.normal[axis] == 1) return static_cast<BspNode::Kind>(axis);
-  }
-  return BspNode::kOblique;
-}
 
 std::optional<BspPlane> cheapest_plane(const ConvexCell& cell, const Box3f& cell_bounds, const BspPieces& pieces,
                                        uint64_t most_references, const BspOptions& options) {
