@@ -71,8 +71,8 @@ class Judge {
 
   double cost_of_leaf() const { return options_.primitive_cost * pieces_.size(); }
 
-  /// Infinite where the plane is out of the question.
-  double cost_of(const BspPlane& plane) const {
+  /// Infinite where the plane is out of the question, be it because it cannot be cheaper than `best`.
+  double cost_of(const BspPlane& plane, double best) const {
     constexpr double kNever = std::numeric_limits<double>::infinity();
     const BspPlane::Kind kind = plane.kind();
     const BspPieces::Counts counts = kind == BspPlane::kOblique
@@ -82,7 +82,7 @@ class Judge {
     const double plane_cost = kind == BspPlane::kOblique ? options_.oblique_cost : options_.axis_cost;
     // The parts' areas add up to at least that of the cell.
     const double least = plane_cost + options_.primitive_cost * std::min(counts.below, counts.above);
-    if (least >= cost_of_leaf()) return kNever;
+    if (least >= best) return kNever;
     const ConvexCell::Areas areas = cell_.areas_after(plane);
     if (!(areas.below > 0) || !(areas.above > 0)) return kNever;
     return plane_cost +
@@ -106,10 +106,14 @@ std::optional<BspPlane> cheapest_plane(const ConvexCell& cell, const Box3f& cell
   add_faces(pieces, options.faces, planes);
   const Judge judge(cell, pieces, most_references, options);
   std::vector<double> costs(planes.size());
-  const auto judge_some = [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) costs[i] = judge.cost_of(planes[i]);
-  };
-  pieces.size() >= kParallelCount ? parallel_for(planes.size(), 1, judge_some) : judge_some(0, planes.size());
+  if (pieces.size() >= kParallelCount) {
+    parallel_for(planes.size(), 1, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) costs[i] = judge.cost_of(planes[i], judge.cost_of_leaf());
+    });
+  } else {
+    double least = judge.cost_of_leaf();
+    for (size_t i = 0; i < planes.size(); ++i) least = std::min(least, costs[i] = judge.cost_of(planes[i], least));
+  }
   const auto best = std::min_element(costs.begin(), costs.end());
   if (best == costs.end() || !(*best < judge.cost_of_leaf())) return std::nullopt;
   return planes[static_cast<size_t>(best - costs.begin())];
