@@ -140,6 +140,31 @@ TEST(LateSplit, KeepsItsLimitsAndTheStandardTree) {
   EXPECT_LE(scene_of(triangles, "binned_sah+late_split(sa_max=1e-9,cap=2)").report().references_per_primitive, 2);
 }
 
+TEST(LateSplit, OnePrimitiveIsTestedOnceHoweverDeepItsPieces) {
+  const std::vector<Vec3f> vertices = {{0, 0, 0}, {10, 1, 0}, {1, 10, 9}};
+  const std::vector<TriangleCorners> triangles = {{0, 1, 2}};
+  size_t saved = 0;
+  for (const bool restores : {true, false}) {
+    Scene scene;
+    scene.add(TriangleMesh{vertices, triangles});
+    scene.build(
+        {.structure = std::string("binned_sah+late_split(sa_max=1,cap=1000,restore=") + (restores ? "on)" : "off)")});
+    EXPECT_GT(scene.report().depth, 6U);
+    for (int i = 0; i < 400; ++i) {
+      const int row = i / 20;
+      const float x = 0.5F * static_cast<float>(i % 20), z = 0.5F * static_cast<float>(row);
+      TraceCounts counts;
+      scene.closest_hit({.origin = {x, -1, z}, .direction = {0.1F, 1, 0.1F}}, counts);
+      if (restores) {
+        EXPECT_LE(counts.primitives, 1U);
+      } else {
+        saved += counts.primitives > 1 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(saved, 20U) << "or there was nothing to save";
+}
+
 TEST(LateSplit, MayFollowEarlySplitting) {
   const RandomTriangles triangles(500);
   const Scene scene = scene_of(triangles, "early_split(budget=2)+binned_sah+late_split(budget=2)");

@@ -71,17 +71,18 @@ class Judge {
 
   double cost_of_leaf() const { return options_.primitive_cost * pieces_.size(); }
 
-  /// Infinite where the plane is out of the question.
-  double cost_of(const BspPlane& plane) const {
+  /// Infinite where the plane is out of the question, be it because it cannot be cheaper than `best`.
+  double cost_of(const BspPlane& plane, double best) const {
     constexpr double kNever = std::numeric_limits<double>::infinity();
-    const BspNode::Kind kind = kind_of(plane);
-    const BspPieces::Counts counts =
-        kind == BspNode::kOblique ? pieces_.count(plane) : pieces_.count_across(kind, static_cast<float>(plane.offset));
+    const BspPlane::Kind kind = plane.kind();
+    const BspPieces::Counts counts = kind == BspPlane::kOblique
+                                         ? pieces_.count(plane)
+                                         : pieces_.count_across(kind, static_cast<float>(plane.offset));
     if (uint64_t{counts.below} + counts.above > most_references_) return kNever;
-    const double plane_cost = kind == BspNode::kOblique ? options_.oblique_cost : options_.axis_cost;
+    const double plane_cost = kind == BspPlane::kOblique ? options_.oblique_cost : options_.axis_cost;
     // The parts' areas add up to at least that of the cell.
     const double least = plane_cost + options_.primitive_cost * std::min(counts.below, counts.above);
-    if (least >= cost_of_leaf()) return kNever;
+    if (least >= best) return kNever;
     const ConvexCell::Areas areas = cell_.areas_after(plane);
     if (!(areas.below > 0) || !(areas.above > 0)) return kNever;
     return plane_cost +
@@ -97,13 +98,6 @@ class Judge {
 
 }  // namespace
 
-BspNode::Kind kind_of(const BspPlane& plane) {
-  for (uint32_t axis = 0; axis < 3; ++axis) {
-    if (plane.normal[axis] == 1) return static_cast<BspNode::Kind>(axis);
-  }
-  return BspNode::kOblique;
-}
-
 std::optional<BspPlane> cheapest_plane(const ConvexCell& cell, const Box3f& cell_bounds, const BspPieces& pieces,
                                        uint64_t most_references, const BspOptions& options) {
   if (pieces.size() == 0 || !(cell.area() > 0)) return std::nullopt;
@@ -112,10 +106,14 @@ std::optional<BspPlane> cheapest_plane(const ConvexCell& cell, const Box3f& cell
   add_faces(pieces, options.faces, planes);
   const Judge judge(cell, pieces, most_references, options);
   std::vector<double> costs(planes.size());
-  const auto judge_some = [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) costs[i] = judge.cost_of(planes[i]);
-  };
-  pieces.size() >= kParallelCount ? parallel_for(planes.size(), 1, judge_some) : judge_some(0, planes.size());
+  if (pieces.size() >= kParallelCount) {
+    parallel_for(planes.size(), 1, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) costs[i] = judge.cost_of(planes[i], judge.cost_of_leaf());
+    });
+  } else {
+    double least = judge.cost_of_leaf();
+    for (size_t i = 0; i < planes.size(); ++i) least = std::min(least, costs[i] = judge.cost_of(planes[i], least));
+  }
   const auto best = std::min_element(costs.begin(), costs.end());
   if (best == costs.end() || !(*best < judge.cost_of_leaf())) return std::nullopt;
   return planes[static_cast<size_t>(best - costs.begin())];

@@ -13,7 +13,4 @@ namespace kerf {
 std::optional<BspPlane> cheapest_plane(const ConvexCell& cell, const Box3f& cell_bounds, const BspPieces& pieces,
                                        uint64_t most_references, const BspOptions& options);
 
-/// The kind of node that has this plane.
-BspNode::Kind kind_of(const BspPlane& plane);
-
 }  // namespace kerf

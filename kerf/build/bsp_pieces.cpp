@@ -11,14 +11,6 @@
 namespace kerf {
 namespace {
 
-/// The axis that a plane's normal points along, or 3.
-uint32_t axis_of(const BspPlane& plane) {
-  for (uint32_t axis = 0; axis < 3; ++axis) {
-    if (plane.normal[axis] == 1) return axis;
-  }
-  return 3;
-}
-
 float area_of(std::span<const Vec3d> corners) {
   Vec3d sum;
   for (size_t i = 2; i < corners.size(); ++i) {
@@ -165,8 +157,8 @@ void BspPieces::cut_polygon(const BspPiece& piece, const BspPlane& plane, BspPie
 void BspPieces::cut_sphere(const BspPiece& piece, const BspPlane& plane, BspPieces& below, BspPieces& above) const {
   BspPiece down = piece, up = piece;
   const Reference& reference = reference_of(piece);
-  const uint32_t axis = axis_of(plane);
-  if (axis < 3) {
+  const uint32_t axis = plane.kind();
+  if (axis != BspPlane::kOblique) {
     down.bounds.upper[axis] = std::min(down.bounds.upper[axis], round_up(plane.offset));
     up.bounds.lower[axis] = std::max(up.bounds.lower[axis], round_down(plane.offset));
     const Geometry& geometry = geometries_[reference.geometry];

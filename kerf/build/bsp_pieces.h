@@ -29,8 +29,8 @@ class BspPieces {
   BspPieces(std::span<const Geometry> geometries, const std::vector<Reference>& references, double tolerance)
       : geometries_(geometries), references_(&references), tolerance_(tolerance) {}
 
-  /// Adds the piece that is the whole primitive.
-  void add_whole(uint32_t reference);
+  /// Adds the piece that is the whole primitive of reference `number`.
+  void add_whole(uint32_t number);
 
   const std::vector<BspPiece>& list() const { return list_; }
   uint32_t size() const { return static_cast<uint32_t>(list_.size()); }

@@ -44,7 +44,7 @@ class Grower {
       }
       return grown;
     }
-    grown->node = {plane->normal, 0, plane->offset, 0, kind_of(*plane)};
+    grown->node = {plane->normal, 0, plane->offset, 0, plane->kind()};
     const uint32_t count = pieces.size();
     pieces = BspPieces(std::move(parts->first));
     divide(*grown, {std::move(pieces), std::move(parts->second)}, cell.cut(*plane), share, depth, count);
@@ -56,7 +56,10 @@ class Grower {
               uint32_t depth, uint32_t count) const {
     const uint64_t below = pieces.first.size(), above = pieces.second.size();
     const uint64_t rest = share - below - above;
-    const uint64_t for_below = below + (below + above > 0 ? rest / (below + above) * below : 0);
+    const double cost_below = static_cast<double>(below) * cells.below.area();
+    const double cost = cost_below + static_cast<double>(above) * cells.above.area();
+    const double part = cost > 0 ? cost_below / cost : 0.5;
+    const uint64_t for_below = below + static_cast<uint64_t>(static_cast<double>(rest) * part);
     const Box3f around = grown.cell.bounds;
     const auto grow_below = [&] {
       grown.child[0] = grow(std::move(pieces.first), cells.below, around, for_below, depth + 1);

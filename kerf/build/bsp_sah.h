@@ -37,9 +37,9 @@ struct BspOptions {
 /// Ray Tracing with the BSP Tree, 2008). In each cell the planes tried are those across the axes at the sides of the
 /// pieces (between slices, where there are many pieces) and those of the largest pieces' primitives; the cheapest by
 /// the areas of both parts is taken, unless a leaf is cheaper. Pieces are clipped to their cells. The references, one
-/// for each whole primitive, share the cap by their number: a cell passes its share on to its parts, each by its count,
-/// so none is dropped and no order matters. Parallel; the outcome does not depend on the number of threads. Throws
-/// Error(stopped) at the limit.
+/// for each whole primitive, share the cap by their number: a cell passes its share on to its parts, what they need to
+/// each and the rest by area times count, so none is dropped and no order matters. Parallel; the outcome does not
+/// depend on the number of threads. Throws Error(stopped) at the limit.
 BspTree build_bsp_sah(std::span<const Geometry> geometries, const std::vector<Reference>& references,
                       const BspOptions& options = {}, const WorkLimit& limit = {});
 

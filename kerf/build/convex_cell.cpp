@@ -51,6 +51,7 @@ void order_around(std::vector<Vec3d>& corners, const BspPlane& plane) {
   Vec3d middle;
   for (const Vec3d& c : corners) middle = middle + c / static_cast<double>(corners.size());
   std::vector<std::pair<double, Vec3d>> turned;
+  turned.reserve(corners.size());
   for (const Vec3d& c : corners) turned.emplace_back(std::atan2(dot(c - middle, v), dot(c - middle, u)), c);
   std::stable_sort(turned.begin(), turned.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   corners.clear();

@@ -34,7 +34,7 @@ void cut_parallelogram(const Parallelogram& shape, const Refinement& options, co
               v = to_double(cleaned(shape.v));
   const Vec3d normal = cross(u, v);
   uint32_t along_u = levels_above(std::sqrt(dot(normal, normal)), options.limit, 4), along_v = along_u;
-  if (options.measure == Refinement::edge) {
+  if (options.measure == Refinement::Measure::edge) {
     along_u = levels_above(std::sqrt(dot(u, u)), options.limit, 2);
     along_v = levels_above(std::sqrt(dot(v, v)), options.limit, 2);
   }

@@ -11,19 +11,19 @@ namespace kerf {
 
 /// How far to refine. See refine().
 struct Refinement {
-  enum Measure : uint32_t {
+  enum class Measure : uint32_t {
     edge,  ///< the length of a side, in scene units
     area,  ///< of a triangle or parallelogram, in squared scene units
   };
 
-  Measure measure = edge;
+  Measure measure = Measure::edge;
   double limit = std::numeric_limits<double>::infinity();  ///< what is larger is cut; infinite: nothing is
   /// At most this many pieces for each primitive on average, at least 1. Where the limit would need more, it is raised
   /// until the count fits.
   double cap = 16;
 
   /// As finely as a total of `budget` pieces per primitive allows.
-  static Refinement with_budget(double budget, Measure measure = edge) {
+  static Refinement with_budget(double budget, Measure measure = Measure::edge) {
     return {measure, std::numeric_limits<double>::min(), budget};
   }
 };

@@ -13,13 +13,13 @@ double length(Vec3d v) { return std::sqrt(dot(v, v)); }
 
 double size_of(const Triangle& t, Refinement::Measure measure) {
   const Vec3d a = to_double(t.a), b = to_double(t.b), c = to_double(t.c);
-  if (measure == Refinement::area) return 0.5 * length(cross(b - a, c - a));
+  if (measure == Refinement::Measure::area) return 0.5 * length(cross(b - a, c - a));
   return std::max({length(b - a), length(c - b), length(a - c)});
 }
 
 double size_of(const Parallelogram& p, Refinement::Measure measure) {
   const Vec3d u = to_double(p.u), v = to_double(p.v);
-  return measure == Refinement::area ? length(cross(u, v)) : std::max(length(u), length(v));
+  return measure == Refinement::Measure::area ? length(cross(u, v)) : std::max(length(u), length(v));
 }
 
 }  // namespace
@@ -37,7 +37,7 @@ void check_options(const Refinement& options) {
 
 Refiner::Refiner(std::span<const Geometry> geometries, std::span<const Reference> whole, Refinement::Measure measure)
     : geometries_(geometries), whole_(whole), measure_(measure) {
-  const bool by_area = measure == Refinement::area;
+  const bool by_area = measure == Refinement::Measure::area;
   if (by_area) {
     sizes_.resize(whole.size());
     sides_.resize(whole.size());
@@ -61,7 +61,7 @@ Refiner::Refiner(std::span<const Geometry> geometries, std::span<const Reference
 
 void Refiner::set_limit(double limit) {
   limit_ = limit;
-  if (measure_ != Refinement::area) return;
+  if (measure_ != Refinement::Measure::area) return;
   std::fill(side_levels_.begin(), side_levels_.end(), uint8_t{0});
   for (size_t i = 0; i < whole_.size(); ++i) {
     if (!(sizes_[i] > limit)) continue;

@@ -30,11 +30,12 @@ class Refiner {
         {{to_double(triangle.a), 0, 0}, {to_double(triangle.b), 1, 0}, {to_double(triangle.c), 0, 1}}};
     std::array<uint32_t, 3> levels{};
     for (uint32_t s = 0; s < 3; ++s) {
-      levels[s] = measure_ == Refinement::edge ? levels_above(distance(corners[s], corners[(s + 1) % 3]), limit_, 2)
-                                               : side_levels_[sides_[i][s]];
+      levels[s] = measure_ == Refinement::Measure::edge
+                      ? levels_above(distance(corners[s], corners[(s + 1) % 3]), limit_, 2)
+                      : side_levels_[sides_[i][s]];
     }
-    const double longest = measure_ == Refinement::edge ? limit_ : std::numeric_limits<double>::infinity();
-    const uint32_t inner = measure_ == Refinement::edge ? 0 : levels_above(sizes_[i], limit_, 4);
+    const double longest = measure_ == Refinement::Measure::edge ? limit_ : std::numeric_limits<double>::infinity();
+    const uint32_t inner = measure_ == Refinement::Measure::edge ? 0 : levels_above(sizes_[i], limit_, 4);
     TriangleCutter(longest, emit).cut(corners, levels, inner);
   }
 

@@ -30,14 +30,14 @@ SplitResult split_early(const SplitInput& input, const OptionValues& values) {
   return early_split(input.whole, input.clipper, {values["sa_max"], values["cap"]});
 }
 
-constexpr std::string_view kMeasures[] = {"edge", "area"};
+constexpr std::string_view kMeasures[] = {"edge", "area"};  // in the order of Refinement::Measure
 constexpr OptionSpec kRefineOptions[] = {
     {"edge", "length above which an edge is halved, scene units", kInfinity, 0, kInfinity, false, true},
     {"area", "area above which a triangle is cut in four, squared scene units", kInfinity, 0, kInfinity, false, true},
     {"cap", "references per primitive, on average, that are never passed", 16, 1, kMostPerPrimitive},
     {"budget", "instead of edge and area: as finely as this many references per primitive allow", 4, 1,
      kMostPerPrimitive},
-    {"by", "what a budget lowers: the longest edge or the largest area", Refinement::edge, kMeasures},
+    {"by", "what a budget lowers: the longest edge or the largest area", 0, kMeasures},
 };
 
 SplitResult split_by_refinement(const SplitInput& input, const OptionValues& values) {
@@ -46,7 +46,7 @@ SplitResult split_by_refinement(const SplitInput& input, const OptionValues& val
     if (values.is_set("edge") || by_area || values.is_set("cap")) {
       throw Error(ErrorCode::invalid_option, "refine", "budget replaces edge, area and cap: give one or the other");
     }
-    const auto measure = static_cast<Refinement::Measure>(values["by"]);
+    const auto measure = static_cast<Refinement::Measure>(static_cast<uint32_t>(values["by"]));
     SplitResult result =
         refine(input.geometries, input.whole, Refinement::with_budget(values["budget"], measure), input.limit);
     result.capped = false;  // no limit was asked for
@@ -56,7 +56,7 @@ SplitResult split_by_refinement(const SplitInput& input, const OptionValues& val
   if (by_area && values.is_set("edge")) {
     throw Error(ErrorCode::invalid_option, "refine", "edge and area are two measures: give one");
   }
-  const Refinement::Measure measure = by_area ? Refinement::area : Refinement::edge;
+  const Refinement::Measure measure = by_area ? Refinement::Measure::area : Refinement::Measure::edge;
   return refine(input.geometries, input.whole, {measure, values[by_area ? "area" : "edge"], values["cap"]},
                 input.limit);
 }

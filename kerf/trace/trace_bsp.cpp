@@ -45,7 +45,7 @@ class PlaneRay {
     return {along < 0 ? 1U : 0U, (ahead + margin_) * inverse, (ahead - margin_) * inverse};
   }
   Crossing cross(const BspNode& node) const {
-    if (node.kind != BspNode::kOblique) return cross(direction_[node.kind], node.offset - origin_[node.kind]);
+    if (node.kind != BspPlane::kOblique) return cross(direction_[node.kind], node.offset - origin_[node.kind]);
     const Vec3d normal = to_double(node.normal);
     return cross(dot(normal, direction_), node.offset - dot(normal, origin_));
   }

@@ -67,10 +67,7 @@ class Checker {
     constexpr double kPrecision = 0x1p-20;
     const Vec3d normal = to_double(node.normal);
     if (!std::isfinite(node.offset)) return false;
-    if (node.kind == BspNode::kOblique) return std::abs(dot(normal, normal) - 1) <= kPrecision;
-    Vec3f axis;
-    axis[node.kind] = 1;
-    return node.normal == axis;
+    return node.kind == node.plane().kind() && std::abs(dot(normal, normal) - 1) <= kPrecision;
   }
 
   void check_leaf(uint32_t number) {

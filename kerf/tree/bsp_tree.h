@@ -15,22 +15,31 @@ namespace kerf {
 /// The points p with dot(normal, p) = offset. The numbers are exact: whatever they were rounded from, this is the
 /// plane.
 struct BspPlane {
+  enum Kind : uint32_t { kAcrossX, kAcrossY, kAcrossZ, kOblique };
+
   Vec3f normal;  ///< of length 1, as nearly as float has it
   double offset = 0;
 
   /// The distance above the plane.
   double side(Vec3d p) const { return dot(to_double(normal), p) - offset; }
+
+  Kind kind() const {
+    return normal == Vec3f{1, 0, 0}   ? kAcrossX
+           : normal == Vec3f{0, 1, 0} ? kAcrossY
+           : normal == Vec3f{0, 0, 1} ? kAcrossZ
+                                      : kOblique;
+  }
 };
 
 /// A cell: cut by a plane into two, or a leaf. 32 bytes.
 struct BspNode {
-  enum Kind : uint32_t { kAcrossX, kAcrossY, kAcrossZ, kOblique, kLeaf };
+  static constexpr uint32_t kLeaf = 4;
 
-  Vec3f normal;        ///< of the plane; across an axis: 1 along that axis
-  uint32_t first = 0;  ///< inner node: the cell below the plane, the one above follows; leaf: its first slot
-  double offset = 0;   ///< of the plane
-  uint32_t count = 0;  ///< leaf: its number of slots, 0 where there is nothing
-  Kind kind = kLeaf;
+  Vec3f normal;           ///< of the plane
+  uint32_t first = 0;     ///< inner node: the cell below the plane, the one above follows; leaf: its first slot
+  double offset = 0;      ///< of the plane
+  uint32_t count = 0;     ///< leaf: its number of slots, 0 where there is nothing
+  uint32_t kind = kLeaf;  ///< BspPlane::Kind or kLeaf
 
   bool is_leaf() const { return kind == kLeaf; }
   BspPlane plane() const { return {normal, offset}; }
