@@ -13,7 +13,7 @@ namespace kerf {
 struct BspOptions {
   uint32_t max_depth = kMaxDepth;
   uint32_t faces = 8;         ///< planes of primitives tried in a cell, at most: those of the largest pieces
-  uint32_t slices = 16;       ///< of a cell with many pieces; planes across each axis between them are tried
+  uint32_t slices = 32;       ///< of a cell with many pieces; planes across each axis between them are tried
   double cap = 8;             ///< references for each primitive on average, never passed
   double axis_cost = 1;       ///< of meeting a plane across an axis, against primitive_cost for a primitive test
   double oblique_cost = 1.5;  ///< of meeting any other plane
@@ -22,7 +22,7 @@ struct BspOptions {
   static constexpr OptionSpec kSpecs[] = {
       {"depth", "depth of the tree, at most", kMaxDepth, 1, kMaxDepth, true},
       {"faces", "planes of primitives tried in a cell, at most", 8, 0, 1024, true},
-      {"slices", "slices along each axis of a cell with many pieces; the planes between them are tried", 16, 2, 256,
+      {"slices", "slices along each axis of a cell with many pieces; the planes between them are tried", 32, 2, 256,
        true},
       {"cap", "references per primitive, on average, that are never passed", 8, 1, 1000},
       {"axis_cost", "cost of meeting a plane across an axis", 1, 0},

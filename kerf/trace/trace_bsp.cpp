@@ -88,7 +88,6 @@ Hit BspTracer::trace(const Ray& ray, Counts& counts) const {
     counts.count_nodes(1);
     const BspNode& node = tree.nodes[current.node];
     if (!node.is_leaf()) {
-      counts.count_boxes(1);
       const PlaneRay::Crossing crossing = plane_ray.cross(node);
       const Waiting near{node.first + crossing.near, current.entry,
                          crossing.near_exit < current.exit ? crossing.near_exit : current.exit};

@@ -8,7 +8,7 @@
 namespace kerf {
 
 /// Traces rays through a BspTree, one at a time: the cell on the ray's side of each plane first, until a hit lies
-/// before the next cell. Of the counts, `boxes` is the box of everything and the planes that were met.
+/// before the next cell. The one box that is tested is that of everything.
 struct BspTracer {
   BspTree tree;
   std::span<const Geometry> geometries;
