@@ -21,9 +21,8 @@ struct WorkLimit {
   static WorkLimit seconds(double seconds) {
     constexpr double kLongest = 1e8;  // some years: what does not fit a clock's number must not
     WorkLimit limit;
-    if (seconds < kLongest)
-      limit.deadline =
-          Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    if (seconds >= kLongest) return limit;
+    limit.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
     return limit;
   }
 
