@@ -16,6 +16,7 @@
 #include "tests/support/error_of.h"
 #include "tests/support/property.h"
 #include "tests/support/random.h"
+#include "tests/support/sizes.h"
 #include "tests/support/structures.h"
 
 namespace kerf::test {
@@ -143,7 +144,7 @@ TEST(Nasty, OnePrimitive) {
 TEST(Nasty, ManyIdenticalTrianglesHitTheFirst) {
   Things heap;
   heap.vertices = {kTriangle.a, kTriangle.b, kTriangle.c};
-  heap.triangles.assign(100'000, {0, 1, 2});
+  heap.triangles.assign(kManyCoincident, {0, 1, 2});
   for (const std::string& structure : structures()) {
     Scene scene = scene_of(heap);
     EXPECT_LE(scene.build({.structure = structure}).depth, 64U) << structure;

@@ -52,7 +52,7 @@ TEST(Pipeline, RefusesWithTheColumnAndTheNearestWord) {
       refusal("early_split(samax=10)+binned_sah"),
       "structure 'early_split(samax=10)+binned_sah', column 13: early_split: unknown option 'samax'; did you mean "
       "'sa_max'?");
-  EXPECT_NE(refusal("zzz").find("expected early_split, binned_sah"), std::string::npos);
+  EXPECT_NE(refusal("zzz").find("expected early_split, refine, binned_sah"), std::string::npos);
 }
 
 TEST(Pipeline, RefusesEveryKindOfMistake) {

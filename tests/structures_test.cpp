@@ -11,6 +11,7 @@
 #include "kerf/scene/menu.h"
 #include "tests/support/random.h"
 #include "tests/support/random_scene.h"
+#include "tests/support/sizes.h"
 #include "tests/support/structure_check.h"
 #include "tests/support/structures.h"
 
@@ -114,7 +115,7 @@ TEST_P(EveryStructure, FindsTheHitsOfBruteForceBitForBit) {
 }
 
 TEST_P(EveryStructure, IsTheSameForAnyNumberOfThreads) {
-  const MixedThings things(20000);
+  const MixedThings things(kManyThings);
   Scene scene;
   things.add_to(scene);
   const BuildReport one = scene.build({.structure = GetParam(), .threads = 1});
@@ -129,19 +130,19 @@ TEST_P(EveryStructure, IsTheSameForAnyNumberOfThreads) {
 TEST_P(EveryStructure, CoincidentTrianglesAreBounded) {
   // The limit that nothing but testing them all can pass: 1e5 times the same triangle, the first of them is hit.
   const std::vector<Vec3f> vertices = {{0, 0, 1}, {1, 0.25F, 1.5F}, {0.25F, 1, 2}};
-  const std::vector<TriangleCorners> triangles(100000, {0, 1, 2});
+  const std::vector<TriangleCorners> triangles(kManyCoincident, {0, 1, 2});
   Scene scene;
   scene.add(TriangleMesh{std::span(vertices), std::span(triangles)});
   const BuildReport& report = scene.build({.structure = GetParam()});
   EXPECT_LE(report.references_per_primitive, 64);
-  EXPECT_LE(report.bytes, 100000U * 2048);
+  EXPECT_LE(report.bytes, size_t{2048} * kManyCoincident);
   const Hit hit = scene.closest_hit({.origin = {0.4F, 0.4F, 0}, .direction = {0, 0, 1}});
   ASSERT_TRUE(hit);
   EXPECT_EQ(hit.primitive, 0U);
 }
 
 TEST_P(EveryStructure, GivesUpAtItsLimit) {
-  const MixedThings things(20000);
+  const MixedThings things(kManyThings);
   Scene scene;
   things.add_to(scene);
   scene.build({.structure = GetParam()});

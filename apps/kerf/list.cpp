@@ -1,6 +1,6 @@
 // kerf list: the menu.
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -64,10 +64,11 @@ void print_menu() {
   std::string_view kind;
   for (const MenuEntry& entry : menu()) {
     if (entry.kind != kind) fmt::print("\n{}s\n", kind = entry.kind);
-    fmt::print("  {:<16}{}\n", entry.name, entry.sentence);
-    if (!entry.source.empty()) fmt::print("  {:<16}{}\n", "", entry.source);
+    fmt::print("  {:<18}{}\n", entry.name, entry.sentence);
+    if (!entry.source.empty()) fmt::print("  {:<18}{}\n", "", entry.source);
     for (const OptionSpec& spec : entry.options) {
-      fmt::print("  {:<18}{} = {}: {}\n", "", spec.name, spec.text_of(spec.fallback), spec.sentence);
+      const std::string words = spec.words.empty() ? "" : fmt::format(" (of {})", fmt::join(spec.words, ", "));
+      fmt::print("  {:<20}{} = {}{}: {}\n", "", spec.name, spec.text_of(spec.fallback), words, spec.sentence);
     }
   }
   fmt::print("\nviews\n  {:<16}{}\n", kBeauty, kBeautySentence);

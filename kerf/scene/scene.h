@@ -20,7 +20,7 @@ struct BuildOptions {
   std::string structure = "binned_sah";
   int threads = 0;            ///< 0: as many as the caller's arena has
   bool skip_invalid = false;  ///< drop primitives that are not finite or have a bad index, instead of an error
-  WorkLimit limit;            ///< when to give up
+  WorkLimit limit = {};       ///< when to give up
 };
 
 /// What a build did and what came of it.

@@ -79,6 +79,11 @@ RTCBounds to_embree(const Box3f& box) {
   return bounds;
 }
 
+Box3f flattened(Box3f box, uint32_t axis, float position) {
+  box.lower[axis] = box.upper[axis] = position;
+  return box;
+}
+
 /// Our clip. geomID is not ours at this time: Embree keeps the number of splits allowed in it.
 void split_primitive(const RTCBuildPrimitive* primitive, unsigned int axis, float position, RTCBounds* below,
                      RTCBounds* above, void* data) {
@@ -86,7 +91,12 @@ void split_primitive(const RTCBuildPrimitive* primitive, unsigned int axis, floa
   Reference piece = build.references[primitive->primID];
   piece.lower = {primitive->lower_x, primitive->lower_y, primitive->lower_z};
   piece.upper = {primitive->upper_x, primitive->upper_y, primitive->upper_z};
-  const ClippedBoxes boxes = build.clipper(piece, axis, position);
+  ClippedBoxes boxes = build.clipper(piece, axis, position);
+  // A piece's box may reach over a plane that the primitive in it does not. Embree ends the program where all that it
+  // counted on one side turns out empty, so that side gets a face of the other's box.
+  if (boxes.below.is_empty())
+    boxes.below = flattened(boxes.above.is_empty() ? piece.bounds() : boxes.above, axis, position);
+  if (boxes.above.is_empty()) boxes.above = flattened(boxes.below, axis, position);
   *below = to_embree(boxes.below);
   *above = to_embree(boxes.above);
 }

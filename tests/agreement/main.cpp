@@ -33,7 +33,8 @@ struct Arguments {
   std::vector<std::string> scenes, turns{"straight", "xyz"};
   std::string structures, size = "120x80", json;
   size_t brute_rays = 10000;
-  bool verbose = false;
+  double limit_seconds = std::numeric_limits<double>::infinity();
+  bool once = false, verbose = false;
 };
 
 /// The sums of one row of the table.
@@ -95,10 +96,11 @@ Expected ask_oracles(const Mesh& mesh, const std::vector<SceneCamera>& cameras, 
   return expected;
 }
 
-Tally compare(const Mesh& mesh, const Expected& expected, const std::string& structure, bool verbose) {
+/// Throws Error (stopped) if the build takes longer than the limit.
+Tally compare(const Mesh& mesh, const Expected& expected, const std::string& structure, const Arguments& arguments) {
   Scene scene;
   scene.add(TriangleMesh{std::span(mesh.vertices), std::span(mesh.triangles)});
-  scene.build({.structure = structure});
+  scene.build({.structure = structure, .limit = WorkLimit::seconds(arguments.limit_seconds)});
   std::vector<Hit> hits(expected.rays.size());
   scene.closest_hit(expected.rays, hits);
   Tally tally;
@@ -111,7 +113,7 @@ Tally compare(const Mesh& mesh, const Expected& expected, const std::string& str
     const bool same_place = verdict == Verdict::same || verdict == Verdict::coincident;
     if (same_place) tally.depth_difference = std::max(tally.depth_difference, difference);
     if (difference > 1e-5) ++tally.deep;
-    if (verbose && verdict != Verdict::same) {
+    if (arguments.verbose && verdict != Verdict::same) {
       fmt::print("  ray {}: {}: kerf {} at {:.9g}, oracle {} at {:.9g}\n", i, name(verdict),
                  static_cast<int64_t>(static_cast<int32_t>(hits[i].primitive)), hits[i].t,
                  static_cast<int64_t>(static_cast<int32_t>(expected.embree[i].primitive)), expected.embree[i].t);
@@ -170,8 +172,9 @@ int run(const Arguments& arguments) {
     fmt::print("skipped: no such scene in the folder\n");
     return kSkipped;
   }
-  const std::vector<std::string> structures =
-      arguments.structures.empty() ? all_pipelines() : split_pipeline_list(arguments.structures);
+  const std::vector<std::string> structures = !arguments.structures.empty() ? split_pipeline_list(arguments.structures)
+                                              : arguments.once              ? menu_pipelines()
+                                                                            : all_pipelines();
   fmt::print("{:<15} {:<8} {:<40} {:>8} {:>8} {:>6} {:>6} {:>6} {:>6} {:>6} {:>9} {:>7} {:>6}\n", "scene", "turn",
              "structure", "rays", "hits", "edge", "coinc", "oracle", "unexpl", "depth", "max depth", "brute", "differ");
   Tally total;
@@ -183,10 +186,15 @@ int run(const Arguments& arguments) {
       const Mesh mesh = turned(straight, turn);
       const Expected expected = ask_oracles(mesh, entries, turn, arguments, width, height);
       for (const std::string& structure : structures) {
-        const Tally tally = compare(mesh, expected, structure, arguments.verbose);
-        print_row(scene, turn_name, structure, tally);
-        rows.push_back(row_json(scene, turn_name, structure, tally));
-        total.add(tally);
+        try {
+          const Tally tally = compare(mesh, expected, structure, arguments);
+          print_row(scene, turn_name, structure, tally);
+          rows.push_back(row_json(scene, turn_name, structure, tally));
+          total.add(tally);
+        } catch (const Error& error) {
+          if (error.code() != ErrorCode::stopped) throw;
+          fmt::print("{:<15} {:<8} {:<40} not compared: {}\n", scene, turn_name, structure, error.what());
+        }
       }
     }
   }
@@ -205,7 +213,10 @@ int main(int argc, char** argv) {
   app.footer("Example: kerf_agreement --scenes sponza,bunny --turns straight,x,y,z,xyz --size 300x200");
   app.add_option("--scenes", arguments.scenes, "Scenes to take (default: all)")->delimiter(',');
   app.add_option("--turns", arguments.turns, "straight, x, y, z, xyz")->delimiter(',')->capture_default_str();
-  app.add_option("--structures", arguments.structures, "Pipelines (default: every builder, plain and split at R = 2)");
+  app.add_option("--structures", arguments.structures,
+                 "Pipelines (default: everything in the menu, every word of its options, plain and split at R = 2)");
+  app.add_flag("--once", arguments.once, "Everything in the menu once");
+  app.add_option("--limit-seconds", arguments.limit_seconds, "Leave out what takes longer to build");
   app.add_option("--size", arguments.size, "Rays of each camera")->capture_default_str();
   app.add_option("--brute-rays", arguments.brute_rays, "Rays of each camera traced by brute force too")
       ->capture_default_str();

@@ -281,7 +281,8 @@ def test_report_bounds_menu_version():
     assert any(option["name"] == "budget" for option in by_name["early_split"]["options"])
     for name, entry in by_name.items():
         if entry["kind"] != "splitter":
-            assert kerf.Scene(SQUARE, FACES, name).any_hit([1, 3, 5], DOWN)
+            structure = f"binned_sah+{name}" if entry["kind"] == "layout" else name
+            assert kerf.Scene(SQUARE, FACES, structure).any_hit([1, 3, 5], DOWN)
     assert re.fullmatch(r"\d+\.\d+\.\d+", kerf.__version__)
 
 

@@ -13,9 +13,8 @@ std::optional<std::string> scenes_folder() {
 
 std::vector<SceneCamera> read_cameras(const std::string& folder) {
   std::vector<SceneCamera> cameras = read_camera_list(folder);
-  std::erase_if(cameras, [&](const SceneCamera& entry) {
-    return !std::filesystem::exists(folder + "/" + entry.scene + ".ply");
-  });
+  std::erase_if(
+      cameras, [&](const SceneCamera& entry) { return !std::filesystem::exists(folder + "/" + entry.scene + ".ply"); });
   return cameras;
 }
 

@@ -28,30 +28,33 @@ std::vector<std::string> variants(const MenuEntry& entry) {
   return all;
 }
 
-std::vector<std::string> pipelines(bool with_all_split) {
+enum class Extent { menu, variants, all };
+
+std::vector<std::string> pipelines(Extent extent) {
   std::vector<std::string> all;
   const std::string early = "early_split(budget=2)+";
   for (const MenuEntry& entry : menu()) {
     const std::string name(entry.name);
+    const bool is_structure = entry.kind == "builder" || entry.kind == "structure";
+    const std::string before = entry.kind == "layout" ? "binned_sah+" : "";
     if (entry.kind == "splitter") all.push_back(splitting_text(name) + "+binned_sah");
-    if (entry.kind == "builder" || entry.kind == "structure") all.push_back(name);
-    if (entry.kind == "layout") all.push_back("binned_sah+" + splitting_text(name));
-    for (const std::string& variant : variants(entry)) {
-      if (entry.kind == "builder" || entry.kind == "structure") all.push_back(variant);
-      if (entry.kind == "layout") all.push_back("binned_sah+" + variant);
-    }
+    if (is_structure) all.push_back(name);
+    if (entry.kind == "layout") all.push_back(before + splitting_text(name));
+    if (extent == Extent::menu || entry.kind == "splitter") continue;
+    for (const std::string& variant : variants(entry)) all.push_back(before + variant);
     const auto* structure = std::get_if<const StructureEntry*>(&entry.entry);
     if (structure != nullptr && (*structure)->takes_pieces) all.push_back(early + name);
-    if (with_all_split && entry.kind == "builder") all.push_back(early + name);
-    if (with_all_split && entry.kind == "layout") all.push_back(early + "binned_sah+" + splitting_text(name));
+    if (extent == Extent::variants || structure != nullptr) continue;
+    all.push_back(early + before + (entry.kind == "layout" ? splitting_text(name) : name));
   }
   return all;
 }
 
 }  // namespace
 
-std::vector<std::string> traceable_pipelines() { return pipelines(false); }
-std::vector<std::string> all_pipelines() { return pipelines(true); }
+std::vector<std::string> menu_pipelines() { return pipelines(Extent::menu); }
+std::vector<std::string> traceable_pipelines() { return pipelines(Extent::variants); }
+std::vector<std::string> all_pipelines() { return pipelines(Extent::all); }
 
 std::string test_name(const std::string& pipeline) {
   std::string name = pipeline;

@@ -5,9 +5,11 @@
 
 namespace kerf::test {
 
-/// A pipeline for everything in the menu that rays can be traced through: each structure, each builder, each layout on
-/// binned_sah, each splitter before binned_sah and before what takes its pieces, at settings that split. Structures,
-/// builders and layouts once more for each word of their options.
+/// A pipeline for everything in the menu that rays can be traced through, once: each structure, each builder, each
+/// layout on binned_sah, each splitter before binned_sah, at settings that split.
+std::vector<std::string> menu_pipelines();
+
+/// The same, each word of each option besides, and what takes pieces after early splitting.
 std::vector<std::string> traceable_pipelines();
 
 /// The same, and each builder and layout after early splitting.
