@@ -2,6 +2,7 @@
 
 import json
 import os
+import pathlib
 import signal
 import struct
 import subprocess
@@ -122,6 +123,13 @@ def test_json_says_what_was_done():
     plain = json.loads(kerf("render", "square.ply", "-o", "a.png", *QUICK, "--json", "-", "--quiet").stdout)
     assert plain["view"] == "beauty" and plain["samples"] == 2 and plain["paths"] == 16 * 12 * 2 <= plain["rays"]
     assert plain["scene"]["sa_max"] == "inf" and plain["scene"]["references"] == 4, "the square and two lights"
+
+
+def test_docs_name_every_structure():
+    text = (pathlib.Path(__file__).parents[2] / "docs" / "structures.md").read_text()
+    for entry in json.loads(kerf("list", "--json", "-").stdout):
+        if entry["kind"] in ("splitter", "builder", "layout", "structure"):
+            assert f"`{entry['name']}`" in text, entry["name"]
 
 
 def test_list_names_every_entry():
