@@ -163,7 +163,7 @@ Json report_json(const BuildReport& r) {
 }
 
 void print_build_notes(const BuildReport& report) {
-  if (report.capped) fmt::print(stderr, "kerf: note: the cap on references raised sa_max to {:.6g}\n", report.sa_max);
+  if (report.capped) fmt::print(stderr, "kerf: note: the cap on references raised the limit to {:.6g}\n", report.sa_max);
   if (report.invalid > 0) fmt::print(stderr, "kerf: note: {} invalid triangles were dropped\n", report.invalid);
 }
 
