@@ -13,7 +13,6 @@
 #include "kerf/base/nearest_word.h"
 #include "kerf/io/image_write.h"
 #include "kerf/scene/pipeline.h"
-#include "kerf/study/camera_list.h"
 #include "kerf/study/figures/heat_figure.h"
 #include "kerf/study/figures/leaves_figure.h"
 #include "kerf/study/figures/levels_figure.h"
@@ -109,7 +108,8 @@ std::vector<std::string> check_words(const Arguments& a, const Kind& kind) {
   for (const std::string& row : rows) parse_pipeline(row);
   if (kind.name == "wireframe" && rows.size() > 1) refuse("--rows", "a wireframe looks the same in all of them");
   const bool is_svg = check_drawing_path(a.output);
-  if (is_svg && kind.name != "levels" && kind.name != "leaves") {
+  const bool is_flat = kind.name == "levels" || (kind.name == "leaves" && a.inputs.empty());
+  if (is_svg && !is_flat) {
     refuse("--output", "it holds pictures of pixels; write it as .png");
   }
   check_output(a.output);
@@ -123,8 +123,6 @@ SceneInput read_part(const Arguments& a, const Kind& kind, size_t index, double 
   one.input = a.inputs[index];
   SceneInput input = read_input(one, aspect);
   input.description.name = one.input;
-  const bool is_framed = !input.description.camera && !a.eye && !a.look_at && !a.up && !a.fov;
-  if (const auto camera = is_framed ? listed_camera(one.input) : std::nullopt) input.camera = *camera;
   return input;
 }
 

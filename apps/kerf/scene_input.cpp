@@ -8,6 +8,7 @@
 #include "kerf/base/error.h"
 #include "kerf/render/bare_model.h"
 #include "kerf/scene/pipeline.h"
+#include "kerf/study/camera_list.h"
 
 namespace kerf::app {
 namespace {
@@ -44,8 +45,9 @@ Camera settled_camera(const SceneArguments& arguments, const SceneDescription& s
     throw Error(ErrorCode::invalid_option, "--fov", "it must lie between 0 and 180 degrees");
   }
   Camera camera;
-  if (scene.camera) {
-    camera = *scene.camera;
+  const std::optional<Camera> kept = scene.camera ? scene.camera : listed_camera(arguments.input);
+  if (kept) {
+    camera = *kept;
     camera.up = arguments.up.value_or(camera.up);
     camera.fov = arguments.fov.value_or(camera.fov);
   } else {
@@ -110,7 +112,8 @@ void add_scene_options(CLI::App& command, SceneArguments& a) {
 }
 
 void add_camera_options(CLI::App& command, SceneArguments& a) {
-  add_vector(command, "--eye", a.eye, "Camera position (default: the scene's camera, or the model is framed)");
+  add_vector(command, "--eye", a.eye,
+             "Camera position (default: the scene's camera, that of a cameras.tsv beside it, or it is framed)");
   add_vector(command, "--look-at", a.look_at, "Point in the middle of the picture");
   add_vector(command, "--up", a.up, "Direction that is up (default: 0,1,0)");
   command.add_option("--fov", a.fov, "Vertical field of view in degrees (default: the scene's, or 45)");
@@ -163,7 +166,8 @@ Json report_json(const BuildReport& r) {
 }
 
 void print_build_notes(const BuildReport& report) {
-  if (report.capped) fmt::print(stderr, "kerf: note: the cap on references raised the limit to {:.6g}\n", report.sa_max);
+  if (report.capped)
+    fmt::print(stderr, "kerf: note: the cap on references raised the limit to {:.6g}\n", report.sa_max);
   if (report.invalid > 0) fmt::print(stderr, "kerf: note: {} invalid triangles were dropped\n", report.invalid);
 }
 

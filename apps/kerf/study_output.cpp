@@ -41,6 +41,11 @@ Json study_json(std::span<const StudyResult> results) {
                 {"rays", r.rays},   {"ray_count", r.ray_count}, {"finished", r.finished}};
     if (!r.finished) {
       one["why_not"] = r.why_not;
+      for (const char* key :
+           {"references_per_triangle", "sa_max", "build_seconds", "nodes_per_ray", "triangles_per_ray", "boxes_per_ray",
+            "trace_seconds", "speedup", "bytes", "depth", "sah_cost", "end_point_overlap", "hits"}) {
+        one[key] = nullptr;
+      }
       all.push_back(std::move(one));
       continue;
     }

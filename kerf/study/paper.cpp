@@ -13,6 +13,7 @@
 #include "kerf/scene/menu.h"
 #include "kerf/study/camera_list.h"
 #include "kerf/study/models/models.h"
+#include "kerf/study/turn.h"
 
 namespace kerf {
 namespace {
@@ -46,6 +47,7 @@ constexpr PaperTableScene kTable[] = {
 constexpr const PaperTableScene &kBunny = kTable[0], &kMirrorLow = kTable[1], &kMirrorHigh = kTable[2],
                                 &kPlant = kTable[3];
 
+constexpr double kNear = 1.5;  // how far a stand-in may be off
 constexpr double kSweepBudgets[] = {1.05, 1.1, 1.2, 1.35, 1.5, 1.75, 2, 2.5, 3, 4, 6, 10};
 
 SceneDescription bare(Mesh mesh, const std::string& place) {
@@ -75,6 +77,15 @@ std::optional<PaperStandIn> found(const char* name, const PaperTableScene& paper
                         }};
   }
   return std::nullopt;
+}
+
+PaperStandIn turned_stand_in(const PaperStandIn& straight) {
+  const std::string name = straight.name + " turned xyz";
+  return {name, straight.paper, [name, load = straight.load] {
+            const Transform turn = turn_by_name("xyz");
+            StudyScene scene = load();
+            return StudyScene{name, turned(std::move(scene.description), turn), turned(scene.camera, turn)};
+          }};
 }
 
 bool is_in_menu(std::string_view name) {
@@ -108,10 +119,30 @@ std::vector<PaperStandIn> paper_stand_ins(std::span<const std::string> folders, 
   add_found("housing_fine", kMirrorHigh, ": scenes/get housing");
   for (int seed = 1; seed <= seeds; ++seed) {
     all.push_back(made(seeds > 1 ? fmt::format("plant, seed {}", seed) : "plant", kPlant, "plant", seed));
+    all.back().is_made_plant = true;
   }
-  add_found("sanmiguel", kPlant, "");
-  add_found("tower_bridge", kPlant, "");
+  for (const char* name : {"sanmiguel", "tower_bridge"}) {
+    add_found(name, kPlant, "");
+    if (!all.empty() && all.back().name == name) all.push_back(turned_stand_in(all.back()));
+  }
   return all;
+}
+
+std::string stand_in_verdict(const PaperTableScene& paper, std::span<const StudyResult> results) {
+  const auto plain = std::find_if(results.begin(), results.end(), [](const StudyResult& result) {
+    return result.finished && result.row == "binned_sah" && result.rays == "primary";
+  });
+  if (plain == results.end()) return {};
+  const PaperRow& figures = paper.plain.figures;
+  const double nodes = plain->nodes_per_ray / figures.nodes_per_ray;
+  const double triangles = plain->triangles_per_ray / figures.triangles_per_ray;
+  const auto is_near = [](double ratio) { return ratio <= kNear && ratio >= 1 / kNear; };
+  const bool counts = is_near(nodes) && is_near(triangles);
+  return fmt::format(
+      "{}: its plain tree has {:.3g} nodes and {:.3g} triangle tests a ray, {:.2f} and {:.2f} times those of the "
+      "paper's {}: it {} as a stand-in (within a factor of {})",
+      plain->scene, plain->nodes_per_ray, plain->triangles_per_ray, nodes, triangles, paper.name,
+      counts ? "counts" : "does not count", kNear);
 }
 
 double sa_max_for(const SceneDescription& scene, double budget) {

@@ -34,10 +34,16 @@ struct PaperStandIn {
   std::string name;
   const PaperTableScene* paper;
   std::function<StudyScene()> load;
+  bool is_made_plant = false;
 };
 
+/// Whether a made plant counts as a stand-in: its plain tree's nodes and triangle tests per ray within a factor of 1.5
+/// of the paper's. A sentence with the figures; empty if the plain row did not finish.
+std::string stand_in_verdict(const PaperTableScene& paper, std::span<const StudyResult> results);
+
 /// The stand-ins that can be had here: made ones (the mirror at two levels, the plant, for `seeds` seeds), the bunny
-/// and others from the first of `folders` that has NAME.ply. What is missing is told in `notes`, a sentence each.
+/// and others from the first of `folders` that has NAME.ply, the two largest turned too. What is missing is told in
+/// `notes`, a sentence each.
 std::vector<PaperStandIn> paper_stand_ins(std::span<const std::string> folders, int seeds,
                                           std::vector<std::string>& notes);
 

@@ -76,8 +76,8 @@ struct StudyOptions {
   std::function<bool(double, std::string_view)> progress;
 };
 
-/// A row for everything in the menu that rays can be traced through, splitters at 1.5 references per triangle; without
-/// brute force, which few scenes have time for.
+/// A row for everything in the menu that rays can be traced through, what splits at 1.5 references per triangle;
+/// without brute force, which few scenes have time for.
 std::vector<std::string> all_rows();
 
 /// Builds every row over the scene, shoots the same rays through all of them and measures. In the order of the rows,

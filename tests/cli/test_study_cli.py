@@ -91,6 +91,30 @@ def test_rows_that_do_not_finish_say_so_and_the_others_go_on():
     result = kerf("study", "slivers.obj", *QUICK, "--rows", "binned_sah,sweep_sah", "--limit-gigabytes", "1e-6")
     assert result.returncode == 0
     assert result.stdout.count("not finished") == 2
+    assert rows[0]["nodes_per_ray"] is None
+    unlimited = kerf("study", "slivers.obj", *QUICK, "--rows", "binned_sah", "--limit-gigabytes", "inf")
+    assert unlimited.returncode == 0 and "not finished" not in unlimited.stdout
+
+
+def test_rows_of_a_turned_sweep_are_those_of_the_turned_scene():
+    for turn in ([], ["--turn", "xyz"]):
+        rows = study("slivers.obj", "--sweep", "sa_max", *turn)
+        assert [row["references_per_triangle"] for row in rows[3:6]] == pytest.approx([1.2, 1.35, 1.5], rel=0.02)
+
+
+def test_every_row_of_all_that_splits_splits():
+    for row in study("slivers.obj", "--rows", "all"):
+        if "budget" in row["row"]:
+            assert row["references_per_triangle"] > 1.2, row["row"]
+
+
+def test_a_bad_input_among_good_ones_is_found_first_and_loses_nothing(folder):
+    result = kerf("study", "slivers.obj", "missing.obj", "--json", "out.json")
+    assert result.returncode == 1 and "missing.obj" in result.stderr and not os.path.exists("out.json")
+    (folder / "broken.obj").write_text("f 1 2 3\n")
+    result = kerf("study", "slivers.obj", "broken.obj", *QUICK, "--rows", "binned_sah", "--json", "out.json")
+    assert result.returncode == 1 and "broken.obj" in result.stderr
+    assert [row["scene"] for row in json.load(open("out.json"))] == ["slivers"]
 
 
 def test_rays_are_saved_and_loaded():
@@ -126,6 +150,8 @@ def test_a_camera_list_beside_a_model_is_used_and_words_go_before_it(folder):
     assert far[0]["hits"] < plain[0]["hits"]
     near = study("slivers.obj", "--rows", "binned_sah", "--eye", "0,0,30", "--look-at", "0,0,0")
     assert near[0]["hits"] > far[0]["hits"]
+    closer = study("slivers.obj", "--rows", "binned_sah", "--fov", "1")
+    assert closer[0]["hits"] > far[0]["hits"], "a word changes its part of the listed camera"
     (folder / "cameras.tsv").write_text("names\nslivers 1 2\n")
     result = kerf("study", "slivers.obj", *QUICK)
     assert result.returncode == 1 and "cameras.tsv:2" in result.stderr
@@ -159,6 +185,12 @@ def test_growth_goes_by_tens_and_all_rows_are_everything_in_the_menu():
     (["slivers.obj", "--sweep", "sa_max", "--rows", "binned_sah"], "give no others"),
     (["slivers.obj", "slivers.obj", "--save-rays", "x.npy"], "one input"),
     (["slivers.obj", "--size", "0x3"], "--size"),
+    (["slivers.obj", "--seeds", "2"], "--paper"),
+    (["slivers.obj", "--up-to", "2000"], "--growth"),
+    (["--growth", "soup", "--fov", "30"], "cameras of their own"),
+    (["--paper", "--turn", "x"], "by itself"),
+    (["slivers.obj", "--load-rays", "x.npy", "--rays", "diffuse"], "--load-rays"),
+    (["slivers.obj", "--json", "-", "--csv", "-"], "one file only"),
     (["slivers.obj", "--limit-seconds", "-1"], "limit-seconds"),
     (["slivers.obj", "--repeats", "3"], "--repeat"),
 ])
