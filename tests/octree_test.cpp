@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -211,8 +212,19 @@ TEST(Octree, AsManyCellsWaitAsEver) {
 TEST(Octree, GivesUpAtItsMemoryLimit) {
   const RandomTriangles triangles(3000);
   WorkLimit limit;
-  limit.bytes = 1000;
-  error_of(ErrorCode::stopped, [&] { build({triangles.geometry()}, {}, limit); });
+  const OctreeOptions options{.leaf_size = 1};
+  const size_t least = 3000 * sizeof(Reference);
+  const Octree tree = build({triangles.geometry()}, options);
+  for (const size_t bytes : {size_t{1000}, least, tree.bytes()}) {
+    limit.bytes = bytes;
+    error_of(ErrorCode::stopped, [&] { build({triangles.geometry()}, options, limit); });
+  }
+  // What the cap would allow is not asked for in advance.
+  limit.bytes = 40 * tree.bytes();
+  for (const double cap : {1e6, 1e300, std::numeric_limits<double>::infinity()}) {
+    const Octree capped = build({triangles.geometry()}, {.leaf_size = 100, .cap = cap}, limit);
+    EXPECT_EQ(find_fault(capped, std::vector{triangles.geometry()}), std::nullopt);
+  }
 }
 
 TEST(Octree, FaultsAreFound) {
