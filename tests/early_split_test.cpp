@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -352,6 +353,50 @@ TEST(MakeReferences, CountsAndNamesWhatIsWrong) {
     EXPECT_EQ(r.bounds(), primitive_bounds(geometries[r.geometry], r.primitive));
     EXPECT_EQ(find_defect(geometries[r.geometry], r.primitive), Defect::none);
   }
+}
+
+TEST(EarlySplit, GivesUpAtItsLimit) {
+  const Soup soup = random_soup(2000, 3);
+  const std::vector<Geometry> geometries{{soup.mesh()}};
+  const std::span<const Geometry> all = geometries;
+  const std::vector<Reference> whole = make_references(all).references;
+  const auto stops = [&](const EarlySplit& options, const WorkLimit& limit) {
+    error_of(ErrorCode::stopped, [&] { early_split(whole, geometry_clipper(all), options, limit); });
+  };
+  const std::atomic<bool> cancelled = true;
+  WorkLimit unwanted, late, small, tiny;
+  unwanted.cancelled = &cancelled;
+  late.deadline = WorkLimit::Clock::now();
+  small.bytes = 3 * whole.size() * sizeof(Reference);  // enough for the references, not for their pieces
+  tiny.bytes = 1000;
+  for (const EarlySplit& options : {EarlySplit::with_budget(8), EarlySplit{0.01, 1000}}) {
+    for (const WorkLimit& limit : {unwanted, late, small, tiny}) stops(options, limit);
+  }
+  stops({}, tiny);  // which would copy them all
+  EXPECT_GT(early_split(whole, geometry_clipper(all), EarlySplit::with_budget(2), small).references.size(),
+            whole.size());
+}
+
+TEST(EarlySplit, IsStoppedWithinOnePrimitive) {
+  const std::vector<Reference> one{{{0, 0, 0}, 0, {1, 1, 1}, 0}};
+  std::atomic<bool> cancelled = false;
+  struct Cutter {
+    std::atomic<bool>* cancelled;
+    int cuts = 0;
+  } cutter{&cancelled};
+  // Nothing is ever empty, and the work is not wanted any more after a thousand cuts.
+  const Clipper clipper{[](const void* data, const Reference& reference, uint32_t axis, float position) {
+                          auto& c = *static_cast<Cutter*>(const_cast<void*>(data));
+                          if (++c.cuts == 1000) *c.cancelled = true;
+                          ClippedBoxes boxes{reference.bounds(), reference.bounds()};
+                          boxes.below.upper[axis] = boxes.above.lower[axis] = position;
+                          return boxes;
+                        },
+                        &cutter};
+  WorkLimit limit;
+  limit.cancelled = &cancelled;
+  error_of(ErrorCode::stopped, [&] { early_split(one, clipper, {1e-30, 1e6}, limit); });
+  EXPECT_LT(cutter.cuts, 2000);
 }
 
 }  // namespace

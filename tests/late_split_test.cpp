@@ -2,8 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "kerf/base/rounding.h"
+#include "kerf/build/builders.h"
 #include "kerf/build/late_split.h"
+#include "kerf/build/top_down.h"
 #include "kerf/scene/scene.h"
 #include "kerf/trace/trace_late_split.h"
 #include "tests/support/error_of.h"
@@ -203,6 +207,28 @@ TEST(LateSplit, RefusesWhatCannotBeMeant) {
   EXPECT_NE(text_of("binned_sah(leaf=2)+late_split").find("leaves of at most 1"), std::string::npos);
   EXPECT_NE(text_of("binned_sah+late_split(sa_max=0)"), "");
   EXPECT_NE(text_of("late_split+binned_sah"), "");
+}
+
+TEST(LateSplit, GivesUpAtItsLimit) {
+  const RandomTriangles triangles(2000);
+  const std::vector<Geometry> geometries{triangles.geometry()};
+  const std::span<const Geometry> all = geometries;
+  OptionValues options(TopDownOptions::kSpecs);
+  options.set("object_median", "leaf", 1);
+  const Bvh bvh = build_object_median(make_references(all).references, options);
+  const std::atomic<bool> cancelled = true;
+  WorkLimit unwanted, late, small, tiny;
+  unwanted.cancelled = &cancelled;
+  late.deadline = WorkLimit::Clock::now();
+  small.bytes = 2 * bvh.bytes();  // enough for the tree, not for the pieces
+  tiny.bytes = 1000;
+  for (const EarlySplit& how : {EarlySplit::with_budget(16), EarlySplit{1e-3, 1000}}) {
+    for (const WorkLimit& limit : {unwanted, late, small, tiny}) {
+      error_of(ErrorCode::stopped, [&] { build_late_split(bvh, geometry_clipper(all), how, limit); });
+    }
+  }
+  error_of(ErrorCode::stopped, [&] { build_late_split(bvh, geometry_clipper(all), {}, tiny); });
+  EXPECT_FALSE(build_late_split(bvh, geometry_clipper(all), EarlySplit::with_budget(1.2), small).is_empty());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -158,11 +159,72 @@ TEST(Octree, AClusterOfDenormalSizeIsDividedToTheLastFloat) {
   }
 }
 
+/// In a cube each octant has a triangle, and the first one is divided likewise, `levels` times.
+struct NestedCorners {
+  std::vector<Vec3f> vertices;
+  std::vector<TriangleCorners> triangles;
+
+  explicit NestedCorners(uint32_t levels) {
+    float side = 1;
+    for (uint32_t level = 0; level < levels; ++level) {
+      side *= 0.5F;
+      for (uint32_t octant = 1; octant < 8; ++octant) add(octant, side);
+    }
+    add(0, side);
+    add_triangle({0, 0, 0}, {0.25F * side, 0, 0}, {0, 0.25F * side, 0});  // the cube's corners
+    add_triangle({1, 1, 1}, {0.9375F, 1, 1}, {1, 0.9375F, 1});
+  }
+  Geometry geometry() const { return {TriangleMesh{std::span(vertices), std::span(triangles)}}; }
+
+ private:
+  void add(uint32_t octant, float side) {
+    const auto half = [&](uint32_t axis) { return (octant >> axis & 1) != 0 ? side : 0.0F; };
+    const Vec3f at{half(0), half(1), half(2)};
+    add_triangle(at + side * Vec3f{0.5F, 0.25F, 0.25F}, at + side * Vec3f{0.75F, 0.25F, 0.5F},
+                 at + side * Vec3f{0.5F, 0.25F, 0.75F});
+  }
+  void add_triangle(Vec3f a, Vec3f b, Vec3f c) {
+    const auto first = static_cast<uint32_t>(vertices.size());
+    vertices.insert(vertices.end(), {a, b, c});
+    triangles.push_back({first, first + 1, first + 2});
+  }
+};
+
+TEST(Octree, AsManyCellsWaitAsEver) {
+  // Along the diagonal all octants of each cell are reached, the divided one first, and nothing is hit but at the end.
+  const NestedCorners corners(kMaxDepth);
+  const std::vector<Geometry> geometries{corners.geometry()};
+  const Octree tree = build(geometries, {.leaf_size = 1, .max_depth = kMaxDepth, .cap = 64});
+  ASSERT_EQ(find_fault(tree, geometries), std::nullopt);
+  uint32_t depth = 0;
+  for (uint32_t node = 0; !tree.nodes[node].is_leaf(); ++depth) node = tree.nodes[node].first;
+  EXPECT_EQ(depth, kMaxDepth);
+  const OctreeTracer<Mailbox> tracer{tree, geometries};
+  const OctreeTracer<Mailbox> shallow{build(geometries, {.max_depth = 1}), geometries};
+  for (const float start : {0.0F, -0.5F, -1.0F}) {
+    const Ray ray{.origin = {start, start, start}, .direction = {1, 1, 1}};
+    const auto [hit, counts] = closest(octree_table(true), &tracer, ray);
+    EXPECT_EQ(hit, closest(octree_table(true), &shallow, ray).hit);
+    EXPECT_GE(counts.boxes, 1 + 8 * kMaxDepth);
+  }
+}
+
 TEST(Octree, GivesUpAtItsMemoryLimit) {
   const RandomTriangles triangles(3000);
   WorkLimit limit;
-  limit.bytes = 1000;
-  error_of(ErrorCode::stopped, [&] { build({triangles.geometry()}, {}, limit); });
+  const OctreeOptions options{.leaf_size = 1};
+  const size_t least = 3000 * sizeof(Reference);
+  const Octree tree = build({triangles.geometry()}, options);
+  for (const size_t bytes : {size_t{1000}, least, tree.bytes()}) {
+    limit.bytes = bytes;
+    error_of(ErrorCode::stopped, [&] { build({triangles.geometry()}, options, limit); });
+  }
+  // What the cap would allow is not asked for in advance.
+  limit.bytes = 40 * tree.bytes();
+  for (const double cap : {1e6, 1e300, std::numeric_limits<double>::infinity()}) {
+    const Octree capped = build({triangles.geometry()}, {.leaf_size = 100, .cap = cap}, limit);
+    EXPECT_EQ(find_fault(capped, std::vector{triangles.geometry()}), std::nullopt);
+  }
 }
 
 TEST(Octree, FaultsAreFound) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -289,6 +290,27 @@ TEST(Refine, RefusesWhatCannotBeMeant) {
   EXPECT_NE(text_of("refine(edge=1,by=area)+binned_sah").find("budget"), std::string::npos);
   EXPECT_NE(text_of("refine(edge=0)+binned_sah"), "");
   EXPECT_NE(text_of("refine(edge=1)+early_split(sa_max=1)+binned_sah"), "");
+}
+
+TEST(Refine, GivesUpAtItsLimit) {
+  const RandomTriangles random(2000);
+  const std::vector<Geometry> geometries{random.geometry()};
+  const std::vector<Reference> whole = make_references(geometries).references;
+  const std::atomic<bool> cancelled = true;
+  WorkLimit unwanted, late, small, tiny;
+  unwanted.cancelled = &cancelled;
+  late.deadline = WorkLimit::Clock::now();
+  small.bytes = 3 * whole.size() * sizeof(Reference);  // enough for the references, not for their pieces
+  tiny.bytes = 1000;
+  for (const Refinement::Measure measure : {Refinement::Measure::edge, Refinement::Measure::area}) {
+    for (const Refinement& options : {Refinement::with_budget(8, measure), Refinement{measure, 0.01, 100}}) {
+      for (const WorkLimit& limit : {unwanted, late, small, tiny}) {
+        error_of(ErrorCode::stopped, [&] { refine(geometries, whole, options, limit); });
+      }
+    }
+    EXPECT_GT(refine(geometries, whole, Refinement::with_budget(2, measure), small).references.size(), whole.size());
+  }
+  error_of(ErrorCode::stopped, [&] { refine(geometries, whole, {}, tiny); });
 }
 
 }  // namespace

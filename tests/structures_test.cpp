@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <string>
 #include <vector>
 
-#include "kerf/base/error.h"
 #include "kerf/scene/menu.h"
+#include "kerf/scene/pipeline.h"
+#include "kerf/scene/scene.h"
+#include "tests/support/error_of.h"
 #include "tests/support/random.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/sizes.h"
@@ -32,10 +35,13 @@ struct MixedThings {
           {10.0F * random.vector(), random.vector(), (i % 16 == 0 ? 5.0F : 0.5F) * random.vector()});
     }
   }
+  std::vector<Geometry> geometries() const {
+    return {triangles.geometry(),
+            {Strided<Sphere>(spheres.data(), spheres.size())},
+            {Strided<Parallelogram>(parallelograms.data(), parallelograms.size())}};
+  }
   void add_to(Scene& scene) const {
-    scene.add(triangles.geometry());
-    scene.add(Strided<Sphere>(spheres.data(), spheres.size()));
-    scene.add(Strided<Parallelogram>(parallelograms.data(), parallelograms.size()));
+    for (const Geometry& geometry : geometries()) scene.add(geometry);
   }
 };
 
@@ -133,7 +139,8 @@ TEST_P(EveryStructure, CoincidentTrianglesAreBounded) {
   const std::vector<TriangleCorners> triangles(kManyCoincident, {0, 1, 2});
   Scene scene;
   scene.add(TriangleMesh{std::span(vertices), std::span(triangles)});
-  const BuildReport& report = scene.build({.structure = GetParam()});
+  const BuildReport& report = scene.build({.structure = GetParam(), .limit = WorkLimit::seconds(60)});
+  EXPECT_LE(report.depth, kMaxDepth);
   EXPECT_LE(report.references_per_primitive, 64);
   EXPECT_LE(report.bytes, size_t{2048} * kManyCoincident);
   const Hit hit = scene.closest_hit({.origin = {0.4F, 0.4F, 0}, .direction = {0, 0, 1}});
@@ -141,21 +148,57 @@ TEST_P(EveryStructure, CoincidentTrianglesAreBounded) {
   EXPECT_EQ(hit.primitive, 0U);
 }
 
-TEST_P(EveryStructure, GivesUpAtItsLimit) {
+/// Runs stages as Scene does, but only stage `limited` under the limit, and no further.
+void run_under_limit(const Pipeline& pipeline, size_t limited, const WorkLimit& limit,
+                     std::span<const Geometry> geometries) {
+  std::vector<Reference> references = make_references(geometries).references;
+  Bvh bvh;
+  for (size_t i = 0; i <= limited; ++i) {
+    const auto& [entry, options] = pipeline.stages[i];
+    const WorkLimit allowed = i == limited ? limit : WorkLimit{};
+    if (const auto* splitter = std::get_if<const SplitterEntry*>(&entry->entry)) {
+      references =
+          (*splitter)->split({geometries, references, geometry_clipper(geometries), allowed}, options).references;
+    } else if (const auto* builder = std::get_if<const BuilderEntry*>(&entry->entry)) {
+      OptionValues all = options;
+      if (i + 1 < pipeline.stages.size() && !all.is_set("leaf")) all.set(entry->name, "leaf", 1);  // fits any layout
+      bvh = (*builder)->build({references, geometry_clipper(geometries), allowed}, all);
+    } else if (const auto* layout = std::get_if<const LayoutEntry*>(&entry->entry)) {
+      (*layout)->make(bvh, {geometries, {}, false, allowed}, options);
+    } else {
+      std::get<const StructureEntry*>(entry->entry)->build({geometries, references, false, allowed}, options);
+    }
+  }
+}
+
+TEST_P(EveryStructure, EachStageGivesUpAtItsLimit) {
+  const MixedThings things(2000);
+  const std::vector<Geometry> geometries = things.geometries();
+  const Pipeline pipeline = parse_pipeline(GetParam());
+  const std::atomic<bool> cancelled = true;
+  WorkLimit unwanted, late, small;
+  unwanted.cancelled = &cancelled;
+  late.deadline = WorkLimit::Clock::now();
+  small.bytes = 1000;
+  for (size_t i = 0; i < pipeline.stages.size(); ++i) {
+    run_under_limit(pipeline, i, WorkLimit::seconds(60), geometries);
+    for (const WorkLimit& limit : {unwanted, late, small}) {
+      SCOPED_TRACE(pipeline.stages[i].entry->name);
+      error_of(ErrorCode::stopped, [&] { run_under_limit(pipeline, i, limit, geometries); });
+    }
+  }
+}
+
+TEST_P(EveryStructure, AStoppedBuildLeavesTheSceneAsItWas) {
   const MixedThings things(kManyThings);
   Scene scene;
   things.add_to(scene);
   scene.build({.structure = GetParam()});
   const Hit before = scene.closest_hit(mixed_rays(1)[0]);
-  std::atomic<bool> cancelled = true;
+  const std::atomic<bool> cancelled = true;
   WorkLimit limit;
   limit.cancelled = &cancelled;
-  try {
-    scene.build({.structure = GetParam(), .limit = limit});
-    ADD_FAILURE() << "it was not stopped";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::stopped) << error.what();
-  }
+  error_of(ErrorCode::stopped, [&] { scene.build({.structure = GetParam(), .limit = limit}); });
   EXPECT_EQ(scene.closest_hit(mixed_rays(1)[0]), before);
 }
 

@@ -1,5 +1,6 @@
 #include "kerf/build/late_split.h"
 
+#include <atomic>
 #include <cassert>
 
 #include "kerf/base/parallel.h"
@@ -37,17 +38,20 @@ std::vector<Leaf> leaves_of(const Bvh& bvh) {
 }
 
 /// The limit that keeps the cap: what early splitting of the leaves needs, for they are cut alike.
-double fitting_limit(const std::vector<Leaf>& leaves, const Clipper& clipper, const EarlySplit& options) {
+double fitting_limit(const std::vector<Leaf>& leaves, const Clipper& clipper, const EarlySplit& options,
+                     const WorkLimit& limit) {
   std::vector<Reference> references;
   references.reserve(leaves.size());
   for (const Leaf& leaf : leaves) references.push_back(leaf.reference);
-  return early_split(references, clipper, options).limit;
+  return early_split(references, clipper, options, limit).limit;
 }
 
 /// Cuts leaves into trees whose pairs are numbered from 0.
 class PieceTrees {
  public:
-  PieceTrees(const Clipper& clipper, double sa_max) : clipper_(clipper), sa_max_(sa_max) {}
+  /// `told`: the pairs of all such trees together, which the limit is for.
+  PieceTrees(const Clipper& clipper, double sa_max, const WorkLimit& limit, std::atomic<size_t>& told)
+      : clipper_(clipper), sa_max_(sa_max), limit_(limit), told_(told) {}
 
   /// The node that takes the leaf's place.
   Node add(const Leaf& leaf, uint32_t slot) {
@@ -61,6 +65,8 @@ class PieceTrees {
   std::vector<LateSplitPair> pairs;
 
  private:
+  static constexpr size_t kTellEvery = 256;
+
   Node cut(Reference piece, uint32_t depth) {
     while (surface_area(piece.bounds()) > sa_max_ && depth < kMaxDepth) {
       const auto parts = cut_in_the_middle(piece, clipper_);
@@ -74,6 +80,7 @@ class PieceTrees {
   Node divide(const Reference& piece, const ClippedBoxes& parts, uint32_t depth) {
     const auto pair = static_cast<uint32_t>(pairs.size());
     pairs.emplace_back();
+    if (pairs.size() % kTellEvery == 0) limit_.check((told_ += kTellEvery) * sizeof(LateSplitPair));
     const Node below = cut(with_box(piece, parts.below), depth + 1);
     const Node above = cut(with_box(piece, parts.above), depth + 1);
     pairs[pair] = {{below, above}};
@@ -82,6 +89,8 @@ class PieceTrees {
 
   const Clipper& clipper_;
   double sa_max_;
+  const WorkLimit& limit_;
+  std::atomic<size_t>& told_;
   uint32_t slot_ = 0;
 };
 
@@ -94,9 +103,10 @@ struct Block {
 std::vector<Block> cut_leaves(const std::vector<Leaf>& leaves, const Clipper& clipper, double sa_max,
                               const WorkLimit& limit, size_t grain) {
   std::vector<Block> blocks((leaves.size() + grain - 1) / grain);
+  std::atomic<size_t> pairs = 0;
   parallel_for(leaves.size(), grain, [&](size_t begin, size_t end) {
     limit.check();
-    PieceTrees trees(clipper, sa_max);
+    PieceTrees trees(clipper, sa_max, limit, pairs);
     Block& block = blocks[begin / grain];
     for (size_t i = begin; i < end; ++i) block.nodes.push_back(trees.add(leaves[i], static_cast<uint32_t>(i)));
     block.pairs = std::move(trees.pairs);
@@ -118,7 +128,7 @@ LateSplitBvh build_late_split(const Bvh& bvh, const Clipper& clipper, const Earl
   LateSplitBvh tree;
   const std::vector<Leaf> leaves = bvh.nodes.empty() ? std::vector<Leaf>() : leaves_of(bvh);
   limit.check();
-  const double sa_max = fitting_limit(leaves, clipper, options);
+  const double sa_max = fitting_limit(leaves, clipper, options, limit);
   if (leaves.empty()) return tree;
   limit.check(bvh.bytes());
   std::vector<Block> blocks = cut_leaves(leaves, clipper, sa_max, limit, kGrain);

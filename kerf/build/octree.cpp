@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <utility>
 
 #include "kerf/base/parallel.h"
@@ -24,16 +25,26 @@ class OctreeBuilder {
   OctreeBuilder(const Clipper& clipper, const OctreeOptions& options, uint32_t axes, const WorkLimit& limit)
       : clipper_(clipper), options_(options), axes_(axes), limit_(limit) {}
 
+  Branch build(std::span<const Reference> references, const Box3f& cell, double room) {
+    count(references.size_bytes());
+    Branch root;
+    build(root, {references.begin(), references.end()}, cell, 0, room);
+    count(bytes_);  // the tree stands beside the branches that it is made from
+    return root;
+  }
+
+ private:
   /// `room`: slots that may stand below.
-  void build(Branch& branch, std::vector<Reference> pieces, const Box3f& cell, uint32_t depth, double room) const {
-    if (pieces.size() >= kParallelCount) limit_.check();
+  void build(Branch& branch, std::vector<Reference> pieces, const Box3f& cell, uint32_t depth, double room) {
     std::array<std::vector<Reference>, 8> parts;
     if (pieces.size() <= options_.leaf_size || depth == options_.max_depth || !divide(pieces, cell, room, parts)) {
       branch.slots.reserve(pieces.size());
       for (const Reference& piece : pieces) branch.slots.push_back({piece.geometry, piece.primitive});
+      bytes_ -= pieces.size() * (sizeof(Reference) - sizeof(LeafSlot));
       return;
     }
     const bool worth_tasks = pieces.size() >= kParallelCount;
+    bytes_ -= pieces.size() * sizeof(Reference);
     std::vector<Reference>().swap(pieces);
     std::array<uint32_t, 8> octants{};
     size_t count = 0, total = 0;
@@ -53,10 +64,9 @@ class OctreeBuilder {
     });
   }
 
- private:
   /// Sorts pieces into octants; false if the cell shall not be divided.
   bool divide(const std::vector<Reference>& pieces, const Box3f& cell, double room,
-              std::array<std::vector<Reference>, 8>& parts) const {
+              std::array<std::vector<Reference>, 8>& parts) {
     size_t total = 0;
     for (const Reference& piece : pieces) {
       Reference part = piece;
@@ -79,13 +89,18 @@ class OctreeBuilder {
     for (uint32_t octant = 0; octant < 8; ++octant) {
       below += half_area(octant_of(cell, octant, axes_)) * static_cast<double>(parts[octant].size());
     }
-    return area + below < area * static_cast<double>(pieces.size());
+    if (!(area + below < area * static_cast<double>(pieces.size()))) return false;
+    count(total * sizeof(Reference) + 8 * sizeof(Branch));
+    return true;
   }
+
+  void count(size_t bytes) { limit_.check(bytes_ += bytes); }
 
   const Clipper& clipper_;
   const OctreeOptions& options_;
   const uint32_t axes_;
   const WorkLimit& limit_;
+  std::atomic<size_t> bytes_ = 0;  // of the pieces and branches that there are now
 };
 
 /// Puts a branch and what is below it in its place in the tree.
@@ -129,10 +144,7 @@ Octree build_octree(std::span<const Reference> references, const Clipper& clippe
   }
   const double most =
       std::min(static_cast<double>(kMaxReferences), options.cap * static_cast<double>(references.size()));
-  limit.check(static_cast<size_t>(options.cap * 2) * references.size() * sizeof(Reference));
-  Branch root;
-  OctreeBuilder(clipper, options, tree.axes, limit)
-      .build(root, {references.begin(), references.end()}, tree.bounds, 0, most);
+  const Branch root = OctreeBuilder(clipper, options, tree.axes, limit).build(references, tree.bounds, most);
   tree.nodes.resize(1);
   flatten(tree, 0, root);
   tree.nodes.shrink_to_fit();

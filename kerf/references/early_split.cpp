@@ -33,8 +33,8 @@ void split_primitive(const Reference& whole, const Clipper& clipper, double sa_m
 
 /// The references that sa_max gives, or nothing if they are more than `most`.
 std::optional<std::vector<Reference>> split_all(std::span<const Reference> whole, const Clipper& clipper, double sa_max,
-                                                size_t most) {
-  return split_each(whole, most, [&](const Reference& reference, const auto& emit) {
+                                                size_t most, const WorkLimit& limit) {
+  return split_each(whole, most, limit, [&](const Reference& reference, const auto& emit) {
     thread_local std::vector<Reference> stack;
     split_primitive(reference, clipper, sa_max, stack, emit);
   });
@@ -43,11 +43,12 @@ std::optional<std::vector<Reference>> split_all(std::span<const Reference> whole
 /// Splits with the smallest sa_max, to 0.05 %, above `too_small` whose references fit. The count never grows with
 /// sa_max, because a piece lies within the box that it was cut from; so bisection finds it. A finer limit only cuts the
 /// pieces of a coarser one further, so each step starts from the finest pieces that fitted.
-SplitResult split_to_fit(std::span<const Reference> whole, const Clipper& clipper, double too_small, size_t most) {
+SplitResult split_to_fit(std::span<const Reference> whole, const Clipper& clipper, double too_small, size_t most,
+                         const WorkLimit& limit) {
   SplitResult result{{whole.begin(), whole.end()}, 0, true};
   for (const Reference& reference : whole) result.limit = std::max(result.limit, surface_area(reference.bounds()));
   result.limit = lower_to_fit(result.limit, too_small, whole.size(), most, [&](double sa_max) -> std::optional<size_t> {
-    auto finer = split_all(result.references, clipper, sa_max, most);
+    auto finer = split_all(result.references, clipper, sa_max, most, limit);
     if (!finer) return std::nullopt;
     result.references = std::move(*finer);
     return result.references.size();
@@ -57,7 +58,8 @@ SplitResult split_to_fit(std::span<const Reference> whole, const Clipper& clippe
 
 }  // namespace
 
-SplitResult early_split(std::span<const Reference> whole, const Clipper& clipper, const EarlySplit& options) {
+SplitResult early_split(std::span<const Reference> whole, const Clipper& clipper, const EarlySplit& options,
+                        const WorkLimit& limit) {
   if (!(options.sa_max > 0)) {
     throw Error(ErrorCode::invalid_option, "early_split",
                 "sa_max is " + std::to_string(options.sa_max) + "; it must be above 0 (inf: no splitting)");
@@ -66,12 +68,13 @@ SplitResult early_split(std::span<const Reference> whole, const Clipper& clipper
     throw Error(ErrorCode::invalid_option, "early_split",
                 "cap is " + std::to_string(options.cap) + "; it must be at least 1 reference per primitive");
   }
+  limit.check(whole.size_bytes());
   if (std::isinf(options.sa_max)) return {{whole.begin(), whole.end()}, options.sa_max, false};
   const size_t most = most_references(whole.size(), options.cap);
-  if (auto references = split_all(whole, clipper, options.sa_max, most)) {
+  if (auto references = split_all(whole, clipper, options.sa_max, most, limit)) {
     return {std::move(*references), options.sa_max, false};
   }
-  return split_to_fit(whole, clipper, options.sa_max, most);
+  return split_to_fit(whole, clipper, options.sa_max, most, limit);
 }
 
 }  // namespace kerf

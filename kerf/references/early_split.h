@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "kerf/base/work_limit.h"
 #include "kerf/references/clipper.h"
 #include "kerf/references/split_result.h"
 
@@ -24,7 +25,8 @@ struct EarlySplit {
 /// replaced by the tight boxes of the two parts; parts that are empty are dropped. Takes and gives references in the
 /// caller's order, pieces of one primitive side by side. Parallel; the outcome does not depend on the number of
 /// threads. Ends for every input: a box that has no float between its sides is not cut further. Throws
-/// Error(invalid_option) if sa_max is not above 0 or cap is not at least 1 (NaN included).
-SplitResult early_split(std::span<const Reference> whole, const Clipper& clipper, const EarlySplit& options);
+/// Error(invalid_option) if sa_max is not above 0 or cap is not at least 1 (NaN included), Error(stopped) at the limit.
+SplitResult early_split(std::span<const Reference> whole, const Clipper& clipper, const EarlySplit& options,
+                        const WorkLimit& limit = {});
 
 }  // namespace kerf

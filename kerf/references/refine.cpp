@@ -58,9 +58,10 @@ void cut_parallelogram(const Parallelogram& shape, const Refinement& options, co
 
 /// The references that the limit gives, or nothing if they are more than `most`.
 std::optional<std::vector<Reference>> refine_all(std::span<const Geometry> geometries, std::span<const Reference> whole,
-                                                 Refiner& refiner, const Refinement& options, size_t most) {
+                                                 Refiner& refiner, const Refinement& options, size_t most,
+                                                 const WorkLimit& limit) {
   refiner.set_limit(options.limit);
-  return split_each(whole, most, [&](const Reference& reference, const auto& emit) {
+  return split_each(whole, most, limit, [&](const Reference& reference, const auto& emit) {
     const auto& shapes = geometries[reference.geometry].shapes;
     if (std::holds_alternative<TriangleMesh>(shapes)) {
       cut_triangle(refiner, static_cast<size_t>(&reference - whole.data()), reference, emit);
@@ -77,12 +78,13 @@ std::optional<std::vector<Reference>> refine_all(std::span<const Geometry> geome
 SplitResult refine(std::span<const Geometry> geometries, std::span<const Reference> whole, const Refinement& options,
                    const WorkLimit& limit) {
   check_options(options);
+  limit.check(whole.size_bytes());
   if (std::isinf(options.limit)) return {{whole.begin(), whole.end()}, options.limit, false};
   Refiner refiner(geometries, whole, options.measure);
   const size_t most = most_references(whole.size(), options.cap);
   const auto try_limit = [&](double size) {
     limit.check();
-    return refine_all(geometries, whole, refiner, {options.measure, size, options.cap}, most);
+    return refine_all(geometries, whole, refiner, {options.measure, size, options.cap}, most, limit);
   };
   if (auto references = try_limit(options.limit)) return {std::move(*references), options.limit, false};
   SplitResult result{{whole.begin(), whole.end()}, 0, true};

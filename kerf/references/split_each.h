@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kerf/base/parallel.h"
+#include "kerf/base/work_limit.h"
 #include "kerf/references/reference.h"
 
 namespace kerf {
@@ -20,9 +21,11 @@ inline size_t most_references(size_t whole, double cap) {
 }
 
 /// Calls split(reference, emit) for each reference, in blocks at once; split calls emit(piece) for each piece, which
-/// returns false to stop early. The pieces in order, or nothing if they are more than `most`.
+/// returns false to stop early. The pieces in order, or nothing if they are more than `most`. Throws Error(stopped) at
+/// the limit.
 template <class Split>
-std::optional<std::vector<Reference>> split_each(std::span<const Reference> whole, size_t most, Split&& split) {
+std::optional<std::vector<Reference>> split_each(std::span<const Reference> whole, size_t most, const WorkLimit& limit,
+                                                 Split&& split) {
   constexpr size_t kGrain = 1024;
   constexpr size_t kTellEvery = 256;
   std::vector<std::vector<Reference>> blocks((whole.size() + kGrain - 1) / kGrain);
@@ -30,14 +33,18 @@ std::optional<std::vector<Reference>> split_each(std::span<const Reference> whol
   parallel_for(whole.size(), kGrain, [&](size_t begin, size_t end) {
     std::vector<Reference>& out = blocks[begin / kGrain];
     size_t told = 0;  // pieces of `out` that `total` knows of
+    // Told to the others now and then, or each thread might make as many as all together may.
+    const auto tell = [&] {
+      total += out.size() - std::exchange(told, out.size());
+      limit.check(total * sizeof(Reference));
+    };
     const auto emit = [&](const Reference& piece) {
       out.push_back(piece);
-      // Told to the others now and then, or each thread might make as many as all together may.
-      if (out.size() - told >= kTellEvery) total += out.size() - std::exchange(told, out.size());
+      if (out.size() - told >= kTellEvery) tell();
       return total.load(std::memory_order_relaxed) <= most;
     };
     for (size_t i = begin; i < end && total.load(std::memory_order_relaxed) <= most; ++i) split(whole[i], emit);
-    total += out.size() - told;
+    tell();
   });
   if (total > most) return std::nullopt;
   std::vector<Reference> all;

@@ -23,11 +23,12 @@ SplitResult split_early(const SplitInput& input, const OptionValues& values) {
     if (values.is_set("sa_max") || values.is_set("cap")) {
       throw Error(ErrorCode::invalid_option, "early_split", "budget replaces sa_max and cap: give one or the other");
     }
-    SplitResult result = early_split(input.whole, input.clipper, EarlySplit::with_budget(values["budget"]));
+    SplitResult result =
+        early_split(input.whole, input.clipper, EarlySplit::with_budget(values["budget"]), input.limit);
     result.capped = false;  // no limit was asked for
     return result;
   }
-  return early_split(input.whole, input.clipper, {values["sa_max"], values["cap"]});
+  return early_split(input.whole, input.clipper, {values["sa_max"], values["cap"]}, input.limit);
 }
 
 constexpr std::string_view kMeasures[] = {"edge", "area"};  // in the order of Refinement::Measure

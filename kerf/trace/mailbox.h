@@ -9,10 +9,12 @@ namespace kerf {
 /// The primitives that a ray was tested against lately, so that one with several references is tested once (inverse
 /// mailboxing: Shevtsov, Soupikov, Kapustin: Highly Parallel Fast KD-tree Construction for Interactive Ray Tracing of
 /// Dynamic Scenes, 2007). It lives on the ray's stack, so any number of threads may trace. A primitive is tested again
-/// if another one took its place in between, which costs a test and changes no hit.
-class Mailbox {
+/// if another one took its place in between, which costs a test and changes no hit: the more places, the less often,
+/// and the longer it takes to set them up for a ray.
+template <uint32_t kPlaces>
+class MailboxOf {
  public:
-  Mailbox() {
+  MailboxOf() {
     for (LeafSlot& slot : slots_) slot = {kNobody, kNobody};
   }
 
@@ -25,11 +27,12 @@ class Mailbox {
   }
 
  private:
-  static constexpr uint32_t kPlaces = 64;
   static constexpr uint32_t kNobody = 0xFFFFFFFF;  // no scene has so many primitives
 
   LeafSlot slots_[kPlaces];
 };
+
+using Mailbox = MailboxOf<64>;
 
 /// Stands where repeats are tested again.
 struct NoMailbox {

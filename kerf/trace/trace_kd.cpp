@@ -4,6 +4,7 @@
 
 #include "kerf/base/fp_environment.h"
 #include "kerf/trace/leaf.h"
+#include "kerf/trace/mailbox.h"
 #include "kerf/trace/ray_box.h"
 
 namespace kerf {
@@ -13,30 +14,6 @@ namespace {
 struct Waiting {
   uint32_t node;
   float from, to;
-};
-
-/// The primitives that a ray tested last, each in a place that follows from its number (inverse mailboxing: Shevtsov,
-/// Soupikov, Kapustin: Highly parallel fast kd-tree construction for interactive ray tracing of dynamic scenes, 2007).
-/// On the stack of each ray, so that threads share nothing.
-class Mailbox {
- public:
-  /// Whether the primitive was tested before; remembers it. Only those with several references can have been.
-  bool holds(const LeafSlot& slot) {
-    if (!slot.is_repeated()) return false;
-    LeafSlot& place = places_[slot.primitive % kPlaces];
-    if (place == slot) return true;
-    place = slot;
-    return false;
-  }
-
- private:
-  static constexpr uint32_t kPlaces = 8;
-
-  LeafSlot places_[kPlaces] = {};  // without kRepeated: equal to none that is asked for
-};
-
-struct NoMailbox {
-  static bool holds(const LeafSlot&) { return false; }
 };
 
 /// Where the ray leaves the box, at the latest.
@@ -68,7 +45,7 @@ Hit KdTracer<kMailbox>::trace(const Ray& ray, Counts& counts) const {
   counts.count_boxes(1);
   if (!box_ray.enters(sides, prepared.t_min, best.t, at.from)) return {};
   at.to = exit_of(box_ray, sides, best.t);
-  std::conditional_t<kMailbox, Mailbox, NoMailbox> mailbox;
+  std::conditional_t<kMailbox, MailboxOf<8>, NoMailbox> mailbox;
   Waiting stack[kMaxDepth];  // one child waits for each level above the current one, and there are at most so many
   uint32_t waiting = 0;
   const KdNode* const nodes = tree.nodes.data();
@@ -96,7 +73,7 @@ Hit KdTracer<kMailbox>::trace(const Ray& ray, Counts& counts) const {
       continue;
     }
     for (const LeafSlot *slot = slots + node.first(), *end = slot + node.count(); slot != end; ++slot) {
-      if (mailbox.holds(*slot)) continue;
+      if (slot->is_repeated() && mailbox.has_seen(*slot)) continue;
       if (test_primitive(geometries, *slot, prepared, best, counts) && kAny) return best;
     }
     do {

@@ -11,6 +11,10 @@
 namespace kerf {
 namespace {
 
+/// At most seven siblings wait for each of kMaxDepth - 1 inner cells above the last one, and the eight children of
+/// that.
+constexpr uint32_t kMostWaiting = 7 * kMaxDepth + 1;
+
 /// A cell that waits for its turn, with where the ray enters and leaves it. Without initial values, because a stack of
 /// them is made for every ray.
 struct Waiting {
@@ -76,7 +80,7 @@ Hit OctreeTracer<Seen>::trace(const Ray& ray, Counts& counts) const {
   uint32_t mirrored = 0;  // axes along which the ray comes to upper halves first
   for (uint32_t a = 0; a < 3; ++a) mirrored |= prepared.direction_d[a] < 0 ? 1U << a : 0;
   Seen seen;
-  Waiting stack[7 * kMaxDepth];  // at most seven siblings wait for each level above the current one
+  Waiting stack[kMostWaiting];
   uint32_t waiting = 0;
   while (true) {
     counts.count_nodes(1);
@@ -95,7 +99,7 @@ Hit OctreeTracer<Seen>::trace(const Ray& ray, Counts& counts) const {
         const uint32_t octant = turned ^ mirrored, bit = 1U << octant;
         if ((node.octants() & bit) == 0) continue;
         counts.count_boxes(1);
-        assert(waiting < 7 * kMaxDepth);
+        assert(waiting < kMostWaiting);
         Waiting& child = stack[waiting];
         child = child_of(current, crossings, octant, turned);
         child.node = node.first + static_cast<uint32_t>(std::popcount(node.octants() & (bit - 1)));

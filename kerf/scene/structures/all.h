@@ -1,9 +1,9 @@
 #pragma once
 
-#include "kerf/build/bsp_sah.h"
 #include <algorithm>
 #include <array>
 
+#include "kerf/build/bsp_sah.h"
 #include "kerf/build/top_down.h"
 #include "kerf/scene/structure.h"
 

@@ -40,6 +40,7 @@ class BruteForceStructure : public Structure {
 }  // namespace
 
 std::unique_ptr<const Structure> build_brute_force(StructureInput input, const OptionValues&) {
+  input.limit.check(input.references.size() * sizeof(LeafSlot));
   return std::make_unique<const BruteForceStructure>(input);
 }
 

@@ -44,6 +44,7 @@ std::unique_ptr<const Structure> make_bvh2_structure(Bvh bvh, const StructureInp
     throw Error(ErrorCode::invalid_option, "bvh2", "another box test goes with order=entry only");
   }
   const auto order = static_cast<size_t>(options["order"]), box = static_cast<size_t>(options["box"]);
+  input.limit.check(bvh.bytes());
   return (box > 0 ? kByBoxTest[box] : kByOrder[order])(std::move(bvh), input);
 }
 

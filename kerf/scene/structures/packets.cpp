@@ -10,6 +10,7 @@ std::unique_ptr<const Structure> make_packets_structure(Bvh bvh, const Structure
   constexpr uint32_t kSizes[] = {4, 8, 16};  // in the order of the words in all.h
   PacketTracer tracer;
   tracer.size = kSizes[static_cast<size_t>(options["size"])];
+  input.limit.check(bvh.bytes());
   return std::make_unique<const Bvh2Structure<PacketTracer>>(std::move(bvh), input, tracer);
 }
 

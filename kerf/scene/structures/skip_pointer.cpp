@@ -45,6 +45,7 @@ class SkipPointerStructure : public Structure {
 
 std::unique_ptr<const Structure> make_skip_pointer_structure(Bvh bvh, const StructureInput& input,
                                                              const OptionValues&) {
+  input.limit.check(bvh.bytes());
   return std::make_unique<const SkipPointerStructure>(std::move(bvh), input);
 }
 
