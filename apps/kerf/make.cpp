@@ -79,7 +79,9 @@ void add_make(CLI::App& app, std::function<int()>& run) {
   command->add_option("name", a->name, "The model; they stand below")->required();
   command->add_option("-o,--output", a->output,
                       "PLY file to write (default: the model's name with .ply, in this folder)");
-  command->add_option("--triangles", a->triangles, "How many triangles, within 5 %; a model that cannot be so small is as small as it can be")
+  command
+      ->add_option("--triangles", a->triangles,
+                   "How many triangles, within 5 %; a model that cannot be so small is as small as it can be")
       ->check(CLI::Range(1, 0x7FFFFFFF))
       ->capture_default_str();
   command->add_option("--seed", a->seed, "Another number gives another model of the same kind")->capture_default_str();

@@ -39,7 +39,7 @@ class GrowingTree {
 
  private:
   static constexpr size_t kCheckEvery = 1024;
-  static constexpr size_t kLongestWay = 256;      // nodes on the way down, at most: the work is bounded
+  static constexpr size_t kLongestWay = 256;     // nodes on the way down, at most: the work is bounded
   static constexpr size_t kLongestSearch = 512;  // nodes looked at beside the way, at most
 
   /// A node looked at.

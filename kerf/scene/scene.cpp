@@ -114,7 +114,7 @@ StructureInput Scene::Built::make_input(const Pipeline& pipeline, const BuildOpt
   if (const auto* splitter = std::get_if<const SplitterEntry*>(&pipeline.stages.front().entry->entry)) {
     const size_t kept = input.references.size();
     SplitResult split = (*splitter)->split({all, input.references, geometry_clipper(all), options.limit},
-                                                pipeline.stages.front().options);
+                                           pipeline.stages.front().options);
     input.references = std::move(split.references);
     input.is_split = input.references.size() > kept;
     report.sa_max = split.limit;

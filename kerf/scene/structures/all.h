@@ -86,7 +86,8 @@ inline constexpr OptionSpec kUniformGridOptions[] = {
 };
 inline constexpr StructureEntry kUniformGridStructure = {
     "uniform_grid",
-    "cells of equal size, in proportion to the primitives; slow where a small dense part stands in a large coarse scene",
+    "cells of equal size, in proportion to the primitives; slow where a small dense part stands in a large coarse "
+    "scene",
     "Amanatides, Woo: A Fast Voxel Traversal Algorithm for Ray Tracing, 1987",
     kUniformGridOptions,
     false,
