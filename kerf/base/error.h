@@ -12,7 +12,7 @@ enum class ErrorCode {
   invalid_argument,  ///< spans of different lengths, a missing pointer
   not_built,         ///< a query before build()
   file,              ///< a file that cannot be read or written, or whose content is wrong
-  too_large,         ///< more primitives or references than 2^31 - 1
+  too_large,         ///< more primitives, references or levels than a tree or its builder can hold
   stopped,           ///< a WorkLimit was reached
 };
 

@@ -125,7 +125,7 @@ class Takeover {
 
  private:
   void take(EmbreeNode* from, uint32_t to, uint32_t depth) {
-    if (depth > kMaxDepth) throw Error(ErrorCode::invalid_argument, "embree", "its tree is too deep");
+    if (depth > kMaxDepth) throw Error(ErrorCode::too_large, "embree", "its tree is too deep");
     Box3f bounds;
     const auto first = static_cast<uint32_t>(from->count > 0 ? bvh_.slots.size() : bvh_.nodes.size());
     if (from->count > 0) {
@@ -200,7 +200,7 @@ Bvh build(BuildInput input, const OptionValues& options, RTCBuildQuality quality
   if (embree.bvh != nullptr) with_threads(1, [&] { root = rtcBuildBVH(&arguments); });
   if (work.failure) std::rethrow_exception(work.failure);
   if (root == nullptr) {
-    throw Error(ErrorCode::invalid_argument, "embree",
+    throw Error(ErrorCode::too_large, "embree",
                 "it refused to build, error " + std::to_string(rtcGetDeviceError(embree.device)));
   }
   return Takeover(input.references).take(static_cast<EmbreeNode*>(root));
