@@ -83,7 +83,7 @@ class Packet {
   /// PreparedRay has no default.
   union Storage {
     PacketRay ray;
-    Storage() {}
+    Storage() {}  // NOLINT(modernize-use-equals-default): a union with such a member has none
     Storage(const Ray& r, const Box3f& scene_bounds) : ray(r, scene_bounds) {}
   };
   static_assert(std::is_trivially_destructible_v<PacketRay>);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -22,7 +23,7 @@ class TriangleColumns {
   size_t bytes() const { return 9 * columns_[0].size() * sizeof(float); }
 
  private:
-  std::vector<float> columns_[9];
+  std::array<std::vector<float>, 9> columns_;
   size_t size_ = 0;
 };
 

@@ -15,7 +15,8 @@ namespace kerf {
 struct UniformGrid {
   using Cell = std::array<uint32_t, 3>;  ///< its place along each axis
 
-  std::vector<float> planes[3];   ///< of each axis, one more than cells along it, not decreasing; no cells: nothing
+  std::array<std::vector<float>, 3>
+      planes;                     ///< of each axis, one more than cells along it, not decreasing; no cells: nothing
   std::vector<uint32_t> offsets;  ///< cell i has the slots [offsets[i], offsets[i + 1])
   std::vector<LeafSlot> slots;    ///< of each cell, by geometry, then primitive
 
