@@ -30,6 +30,7 @@ std::vector<std::string> words_of(const std::string& text) {
 
 std::vector<PaperStudyRow> plain_rows(const std::vector<std::string>& pipelines) {
   std::vector<PaperStudyRow> rows;
+  rows.reserve(pipelines.size());
   for (const std::string& row : pipelines) rows.push_back({row, {}});
   return rows;
 }

@@ -13,7 +13,7 @@ Vec3f heat_color(double x);
 
 /// The colour in OKLab (Ottosson: A perceptual color space for image processing, 2020) of one as displayed: lightness
 /// from 0 to 1, then green to red, then blue to yellow. Distances in it are how different colours look.
-Vec3d oklab_of(Vec3f displayed);
+Vec3d oklab_of(Vec3f c);
 
 /// Well apart from each other, neither light nor dark: one for each number, again from the first after the eighth.
 Vec3f category_color(uint32_t number);

@@ -95,7 +95,10 @@ Image shaded_picture(const Scene& scene, const Camera& camera, const ShadedOptio
   for_each_row(options.height, options.threads, options.progress, [&](uint32_t y) {
     for (uint32_t x = 0; x < options.width; ++x) {
       Vec3f sum;
-      for (uint32_t i = 0; i < n * n; ++i) sum = sum + sample({x + (i % n + 0.5) / n, y + (i / n + 0.5) / n});
+      for (uint32_t i = 0; i < n * n; ++i) {
+        const uint32_t column = i % n, row = i / n;
+        sum = sum + sample({x + (column + 0.5) / n, y + (row + 0.5) / n});
+      }
       for (uint32_t c = 0; c < 3; ++c) {
         picture.pixels[(size_t{y} * options.width + x) * 3 + c] = sum[c] / static_cast<float>(n * n);
       }

@@ -151,8 +151,9 @@ class House {
 /// The corner of a lot; a block is two lots deep and has streets on all sides.
 Vec3d lot_corner(uint64_t number, uint64_t row_length) {
   const uint64_t column = number % row_length, row = number / row_length;
-  return {static_cast<double>(column) * kLot + static_cast<double>(column / kLotsAlong + 1) * kStreet, 0,
-          static_cast<double>(row) * kLot + static_cast<double>(row / kLotsAcross + 1) * kStreet};
+  const uint64_t streets_along = column / kLotsAlong + 1, streets_across = row / kLotsAcross + 1;
+  return {static_cast<double>(column) * kLot + static_cast<double>(streets_along) * kStreet, 0,
+          static_cast<double>(row) * kLot + static_cast<double>(streets_across) * kStreet};
 }
 
 /// The ground as a regular grid of about so many triangles.

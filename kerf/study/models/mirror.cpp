@@ -234,7 +234,8 @@ void add_cables(Faces& faces) {
   const Vec3d plug = arm_path(kCableBegin);
   add_box(faces, plug + Vec3d{-11, -10, -8}, plug + Vec3d{0.5, 10, 8});
   for (int i = 0; i < 10; ++i) {  // its pins
-    const double y = -8 + 4 * (i % 5), z = -3 + 6 * (i / 5);
+    const int column = i % 5, row = i / 5;
+    const double y = -8 + 4 * column, z = -3 + 6 * row;
     const size_t first = faces.size();
     add_cylinder(faces, 0.6, 9, rotation(kY, -90));
     place_faces(faces, first, at(plug + Vec3d{-11, y, z}));

@@ -71,7 +71,7 @@ class Tessellator {
   using Plan = std::vector<uint32_t>;  // the segments of each direction
   struct Layout;
 
-  void survey(size_t face);
+  void survey(size_t number);
   void measure_bend(Face& face, const std::vector<Vec3d>& points) const;
   void join_corners();
   void join_sides();
