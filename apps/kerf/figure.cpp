@@ -104,7 +104,7 @@ std::vector<std::string> check_words(const Arguments& a, const Kind& kind) {
   if (a.levels && kind.name != "levels") refuse("--levels", "only a figure of levels has them");
   if (a.boxes && kind.name != "leaves") refuse("--boxes", "only a figure of leaves has them");
   if (kind.needs_input && a.inputs.empty()) refuse("INPUT", fmt::format("a figure '{}' needs a scene", kind.name));
-  const std::vector<std::string> rows = a.rows.empty() ? kind.rows() : split_pipeline_list(a.rows);
+  std::vector<std::string> rows = a.rows.empty() ? kind.rows() : split_pipeline_list(a.rows);
   for (const std::string& row : rows) parse_pipeline(row);
   if (kind.name == "wireframe" && rows.size() > 1) refuse("--rows", "a wireframe looks the same in all of them");
   const bool is_svg = check_drawing_path(a.output);
