@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "kerf/base/mix.h"
 #include "kerf/base/parallel.h"
 
 namespace kerf {
@@ -30,15 +31,6 @@ class SlotCounts {
   std::vector<size_t> first_;
   std::vector<uint8_t> count_;
 };
-
-/// Mixes 64 bits (the finalizer of splitmix64: Steele, Lea, Flood 2014).
-uint64_t mix(uint64_t x) {
-  x ^= x >> 30;
-  x *= 0xBF58476D1CE4E5B9U;
-  x ^= x >> 27;
-  x *= 0x94D049BB133111EBU;
-  return x ^ (x >> 31);
-}
 
 uint64_t add_word(uint64_t state, uint64_t word) { return mix(state + 0x9E3779B97F4A7C15U + word); }
 

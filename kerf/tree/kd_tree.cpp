@@ -3,17 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "kerf/base/mix.h"
+
 namespace kerf {
 namespace {
-
-/// Mixes 64 bits (the finalizer of splitmix64: Steele, Lea, Flood 2014).
-uint64_t mix(uint64_t x) {
-  x ^= x >> 30;
-  x *= 0xBF58476D1CE4E5B9U;
-  x ^= x >> 27;
-  x *= 0x94D049BB133111EBU;
-  return x ^ (x >> 31);
-}
 
 std::string at(const char* what, size_t number) { return std::string(what) + " " + std::to_string(number); }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <numbers>
 
+#include "kerf/base/mix.h"
 #include "kerf/base/vec3.h"
 
 namespace kerf {
@@ -13,9 +14,9 @@ namespace kerf {
 /// model gives each of its pieces one, whatever the other pieces draw.
 class ModelRandom {
  public:
-  ModelRandom(uint64_t seed, uint64_t stream) : state_(mixed(mixed(seed) + stream)) {}
+  ModelRandom(uint64_t seed, uint64_t stream) : state_(mix(mix(seed) + stream)) {}
 
-  uint64_t bits() { return mixed(state_ += kStride); }
+  uint64_t bits() { return mix(state_ += kStride); }
 
   /// A whole number in [0, count).
   uint32_t below(uint32_t count) { return static_cast<uint32_t>((bits() >> 32) * count >> 32); }
@@ -39,12 +40,6 @@ class ModelRandom {
 
  private:
   static constexpr uint64_t kStride = 0x9E3779B97F4A7C15U;
-
-  static uint64_t mixed(uint64_t x) {
-    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9U;
-    x = (x ^ (x >> 27)) * 0x94D049BB133111EBU;
-    return x ^ (x >> 31);
-  }
 
   uint64_t state_;
 };
