@@ -25,4 +25,5 @@ endif()
 kerf_check(format large ${CMAKE_CURRENT_SOURCE_DIR}/check_format.sh)
 if(NOT KERF_SANITIZE)  # nothing that the other builds do not have
   kerf_check(tidy large ${CMAKE_CURRENT_SOURCE_DIR}/check_tidy.sh ${PROJECT_BINARY_DIR})
+  set_tests_properties(tidy PROPERTIES PROCESSORS 2 COST 1900 TIMEOUT 2700)
 endif()

@@ -12,9 +12,9 @@
 
 #include "kerf/base/error.h"
 #include "kerf/base/parallel.h"
+#include "kerf/choose/splitters.h"
 #include "kerf/geometry/clip.h"
 #include "kerf/references/split_references.h"
-#include "kerf/references/splitters.h"
 #include "tests/support/error_of.h"
 #include "tests/support/exact.h"
 #include "tests/support/property.h"
@@ -155,9 +155,7 @@ TEST(EarlySplit, PiecesCoverTheTriangleAndEachIsItsPartOfTheOriginal) {
 void split_by_the_paper(std::span<const Vec3d> corners, const Box3f& box, double sa_max, std::vector<Box3f>& out) {
   if (surface_area(box) <= sa_max || !can_be_cut(box)) return out.push_back(box);
   const uint32_t axis = largest_axis(box.extent());
-  Box3f below = box, above = box;
-  below.upper[axis] = above.lower[axis] = center(box, axis);
-  below = clipped_bounds(corners, below), above = clipped_bounds(corners, above);
+  const auto [below, above] = cut_bounds(corners, box, axis, center(box, axis));
   if (!below.is_empty()) split_by_the_paper(corners, below, sa_max, out);
   if (!above.is_empty()) split_by_the_paper(corners, above, sa_max, out);
 }

@@ -248,7 +248,7 @@ TEST(Inspect, TriesSplittingWhereThereIsNoneAndNoneWhereThereIs) {
   EXPECT_LT(plain.trial->costs.primitives, plain.costs.primitives);
   ASSERT_TRUE(plain.trial->overlap);
   EXPECT_LT(*plain.trial->overlap, *plain.overlap);
-  EXPECT_NE(findings(plain).back().find("early_split(budget=1.5)"), std::string::npos);
+  EXPECT_NE(findings(plain).back().find("early_split(sa_max=auto)"), std::string::npos);
   options.build.structure = "early_split(budget=2)+binned_sah";
   const Inspection split = inspect(floor_with_sliver(), kFromAbove, options);
   ASSERT_TRUE(split.trial);

@@ -83,8 +83,8 @@ TEST(Pipeline, RefusesEveryKindOfMistake) {
                            "early_split(sa_max=-1)+binned_sah",
                            "early_split(sa_max=nan)+binned_sah",
                            "early_split(cap=0.5)+binned_sah",
-                           "early_split(auto)+binned_sah",
-                           "early_split(sa_max=auto)+binned_sah",
+                           "early_split(auto=3)+binned_sah",
+                           "early_split(sa_max=automatic)+binned_sah",
                            "brute_force(leaf=4)",
                            "binned_sah,sweep_sah"}) {
     EXPECT_FALSE(refusal(text).empty()) << text;

@@ -15,7 +15,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json("inf"); }
+/// A surface area limit: JSON has no number for infinity, nor for one that was chosen for each part of the scene.
+Json number(double x) { return std::isfinite(x) ? Json(x) : Json(std::isnan(x) ? "auto" : "inf"); }
 
 /// "X,Y,Z". One word, not three as CLI11 would have it: that takes what stands behind it too.
 Vec3d parse_vector(const char* option, const std::string& text) {
@@ -141,6 +142,19 @@ RenderScene build_input(const SceneArguments& arguments, SceneInput& input) {
   }
 }
 
+namespace {
+
+Json choice_json(const std::optional<SplitChoice>& choice) {
+  if (!choice) return {};
+  Json curve = Json::array();
+  for (const SplitChoice::Step& step : choice->curve) {
+    curve.push_back({{"references_per_primitive", step.references_per_primitive}, {"cost", step.cost}});
+  }
+  return {{"reason", choice->reason}, {"curve", curve}};
+}
+
+}  // namespace
+
 Json report_json(const BuildReport& r) {
   return {{"structure", r.structure},
           {"primitives", r.primitives},
@@ -150,6 +164,7 @@ Json report_json(const BuildReport& r) {
           {"references_per_primitive", r.references_per_primitive},
           {"sa_max", number(r.sa_max)},
           {"capped", r.capped},
+          {"split_choice", choice_json(r.choice)},
           {"bytes", r.bytes},
           {"nodes", r.nodes},
           {"leaves", r.leaves},
@@ -166,7 +181,7 @@ Json report_json(const BuildReport& r) {
 }
 
 void print_build_notes(const BuildReport& report) {
-  if (report.capped)
+  if (report.capped && !report.choice)
     fmt::print(stderr, "kerf: note: the cap on references raised the limit to {:.6g}\n", report.sa_max);
   if (report.invalid > 0) fmt::print(stderr, "kerf: note: {} invalid triangles were dropped\n", report.invalid);
 }

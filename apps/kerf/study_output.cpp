@@ -50,7 +50,7 @@ Json study_json(std::span<const StudyResult> results) {
       continue;
     }
     one.update({{"references_per_triangle", r.references_per_triangle},
-                {"sa_max", number(r.sa_max)},
+                {"sa_max", std::isnan(r.sa_max) ? Json("auto") : number(r.sa_max)},
                 {"build_seconds", r.build_seconds.median},
                 {"build_seconds_spread", spread_json(r.build_seconds)},
                 {"nodes_per_ray", r.nodes_per_ray},

@@ -25,7 +25,7 @@ struct StudyArguments : SceneArguments {
 };
 
 inline constexpr const char* kStudyRows =
-    "binned_sah,early_split(budget=1.5)+binned_sah,early_split(budget=3)+binned_sah,kd_sah";
+    "binned_sah,early_split(auto)+binned_sah,early_split(budget=3)+binned_sah,kd_sah";
 inline constexpr const char* kStudySize = "1000x1000";
 inline constexpr double kStudyUpTo = 1e6;
 

@@ -46,16 +46,15 @@ double parse_value(std::string_view owner, const OptionSpec& spec, std::string_v
     throw Error(ErrorCode::invalid_option, place,
                 std::string(spec.name) + "=" + std::string(text) + " is not known" + suggestion(text, spec.words));
   }
+  if (spec.may_be_auto && text == "auto") return kAutomatic;
   double value = 0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (status == std::errc::result_out_of_range) {
     throw Error(ErrorCode::invalid_option, place, std::string(spec.name) + ": the value is out of range");
   }
-  if (status != std::errc() || end != text.data() + text.size()) {
-    const bool is_auto = text.starts_with("auto");
+  if (status != std::errc() || end != text.data() + text.size() || std::isnan(value)) {
     throw Error(ErrorCode::invalid_option, place,
-                std::string(spec.name) + ": " +
-                    (is_auto ? "automatic splitting is not there yet; give a number" : "expected a number"));
+                std::string(spec.name) + ": expected a number" + (spec.may_be_auto ? " or auto" : ""));
   }
   return value;
 }
@@ -63,6 +62,7 @@ double parse_value(std::string_view owner, const OptionSpec& spec, std::string_v
 }  // namespace
 
 std::string OptionSpec::text_of(double value) const {
+  if (may_be_auto && is_automatic(value)) return "auto";
   return words.empty() ? to_text(value) : std::string(words[static_cast<size_t>(value)]);
 }
 
@@ -77,6 +77,10 @@ void OptionValues::set(std::string_view owner, std::string_view name, double val
   if (spec == nullptr) throw Error(ErrorCode::invalid_option, std::string(owner), unknown_option(specs_, name));
   if (is_set(name))
     throw Error(ErrorCode::invalid_option, std::string(owner), "option '" + std::string(name) + "' is given twice");
+  if (spec->may_be_auto && is_automatic(value)) {
+    given_.emplace_back(spec->name, value);
+    return;
+  }
   const bool in_range = value <= spec->most && (spec->above_least ? value > spec->least : value >= spec->least);
   if (!in_range || (spec->whole && value != std::floor(value))) {
     throw Error(ErrorCode::invalid_option, std::string(owner),

@@ -22,7 +22,8 @@ struct OptionSpec {
   bool whole = false;        ///< only whole numbers
   bool above_least = false;  ///< `least` itself is not allowed
   std::span<const std::string_view>
-      words;  ///< not empty: the value is written as one of these; its number is 0, 1, ...
+      words;                 ///< not empty: the value is written as one of these; its number is 0, 1, ...
+  bool may_be_auto = false;  ///< takes the word "auto" too; see kAutomatic
 
   constexpr OptionSpec() = default;
   constexpr OptionSpec(std::string_view n, std::string_view s, double f, double from,
@@ -35,6 +36,16 @@ struct OptionSpec {
   /// A value as it is written: a word, or to_text().
   std::string text_of(double value) const;
 };
+
+/// The number of the word "auto": not a number, to be asked for with is_automatic().
+inline constexpr double kAutomatic = std::numeric_limits<double>::quiet_NaN();
+constexpr bool is_automatic(double value) { return value != value; }
+
+/// An option that takes the word "auto" beside numbers.
+constexpr OptionSpec with_auto(OptionSpec spec) {
+  spec.may_be_auto = true;
+  return spec;
+}
 
 /// The words of a switch.
 inline constexpr std::string_view kOffOn[] = {"off", "on"};

@@ -62,45 +62,118 @@ void keep_side(const Polygon& from, Polygon& to, uint32_t axis, double position,
   }
 }
 
-}  // namespace
+/// What corners reach, allowances included.
+struct Reach {
+  static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  double lower[3] = {kInfinity, kInfinity, kInfinity}, upper[3] = {-kInfinity, -kInfinity, -kInfinity};
 
-Box3f clipped_bounds(std::span<const Vec3d> polygon, const Box3f& cell) {
-  Polygon buffers[2];
-  Polygon *current = &buffers[0], *next = &buffers[1];
-  Vec3d lower = polygon[0], upper = polygon[0];
-  for (const Vec3d& p : polygon) {
-    current->push({{p.x, p.y, p.z}, 0});
-    lower = min(lower, p);
-    upper = max(upper, p);
-  }
-  const double rounding = 0x1p-51 * largest(max(abs(lower), abs(upper)));  // of one cut
-  for (uint32_t axis = 0; axis < 3; ++axis) {
-    if (lower[axis] < cell.lower[axis]) {
-      keep_side(*current, *next, axis, cell.lower[axis], 1, rounding);
-      std::swap(current, next);
-    }
-    if (upper[axis] > cell.upper[axis]) {
-      keep_side(*current, *next, axis, cell.upper[axis], -1, rounding);
-      std::swap(current, next);
-    }
-  }
-  if (buffers[0].overflowed || buffers[1].overflowed) {  // never seen; the whole cell is safe
-    return intersected(outward(lower, upper), cell);
-  }
-  if (current->size == 0) return {};
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const Vec3d whole_lower = lower, whole_upper = upper;
-  lower = {kInfinity, kInfinity, kInfinity};
-  upper = -lower;
-  for (const Corner& corner : std::span(current->corners, current->size)) {
+  void add(const Corner& corner) {
     for (uint32_t axis = 0; axis < 3; ++axis) {
       lower[axis] = std::min(lower[axis], corner.point[axis] - corner.error);
       upper[axis] = std::max(upper[axis], corner.point[axis] + corner.error);
     }
   }
-  // No part reaches past the whole, so the allowance must not either: flat stays flat.
-  const Box3f bounds = intersected(outward(max(lower, whole_lower), min(upper, whole_upper)), cell);
-  return bounds.is_empty() ? Box3f{} : bounds;
+};
+
+/// A polygon on its way through cuts, each of the polygon as it was given.
+class PolygonCut {
+ public:
+  explicit PolygonCut(std::span<const Vec3d> polygon) : lower_(polygon[0]), upper_(polygon[0]) {
+    for (const Vec3d& p : polygon) {
+      current_->push({{p.x, p.y, p.z}, 0});
+      lower_ = min(lower_, p);
+      upper_ = max(upper_, p);
+    }
+    rounding_ = 0x1p-51 * largest(max(abs(lower_), abs(upper_)));
+  }
+
+  /// Cuts off what lies outside. Sides that nothing reaches past any more cost nothing: a piece's tight box has six,
+  /// and one or two of them were cuts.
+  void keep_inside(const Box3f& cell) {
+    Vec3d lower = lower_, upper = upper_;
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+      if (lower[axis] < cell.lower[axis]) {
+        keep(axis, cell.lower[axis], 1, lower, upper);
+      }
+      if (upper[axis] > cell.upper[axis]) {
+        keep(axis, cell.upper[axis], -1, lower, upper);
+      }
+    }
+  }
+
+  /// The box of what is left.
+  Box3f bounds(const Box3f& cell) const {
+    Reach reach;
+    for (const Corner& corner : corners()) reach.add(corner);
+    return box_of(reach, cell);
+  }
+
+  /// The boxes of what is left on both sides of a plane.
+  CutBounds halves(const Box3f& cell, uint32_t axis, float position) const {
+    CutBounds cells{cell, cell};
+    cells.below.upper[axis] = position;
+    cells.above.lower[axis] = position;
+    Reach below, above;
+    const std::span<const Corner> all = corners();
+    for (size_t i = 0; i < all.size(); ++i) {
+      const Corner &p = all[i], &q = all[i + 1 == all.size() ? 0 : i + 1];
+      const double p_side = p.point[axis] - position, q_side = q.point[axis] - position;
+      if (p_side <= p.error) below.add(p);
+      if (p_side >= -p.error) above.add(p);
+      if ((p_side > 0 && q_side < 0) || (p_side < 0 && q_side > 0)) {
+        const Corner cut = cut_edge(p, q, axis, position, rounding_);
+        below.add(cut);
+        above.add(cut);
+      }
+    }
+    return {box_of(below, cells.below), box_of(above, cells.above)};
+  }
+
+ private:
+  std::span<const Corner> corners() const { return {current_->corners, current_->size}; }
+
+  void keep(uint32_t axis, double position, double sign, Vec3d& lower, Vec3d& upper) {
+    keep_side(*current_, *next_, axis, position, sign, rounding_);
+    std::swap(current_, next_);
+    if (current_->size == 0) return;
+    lower = upper = {current_->corners[0].point[0], current_->corners[0].point[1], current_->corners[0].point[2]};
+    for (const Corner& corner : corners()) {
+      for (uint32_t i = 0; i < 3; ++i) {
+        lower[i] = std::min(lower[i], corner.point[i]);
+        upper[i] = std::max(upper[i], corner.point[i]);
+      }
+    }
+  }
+
+  Box3f box_of(const Reach& reach, const Box3f& cell) const {
+    // Never seen; the whole cell is safe.
+    if (buffers_[0].overflowed || buffers_[1].overflowed) return intersected(outward(lower_, upper_), cell);
+    if (reach.lower[0] > reach.upper[0]) return {};
+    // No part reaches past the whole, so the allowance must not either: flat stays flat.
+    const Vec3d lower{reach.lower[0], reach.lower[1], reach.lower[2]},
+        upper{reach.upper[0], reach.upper[1], reach.upper[2]};
+    const Box3f box = intersected(outward(max(lower, lower_), min(upper, upper_)), cell);
+    return box.is_empty() ? Box3f{} : box;
+  }
+
+  Polygon buffers_[2];
+  Polygon *current_ = &buffers_[0], *next_ = &buffers_[1];
+  Vec3d lower_, upper_;  ///< of the polygon as it was given
+  double rounding_ = 0;  ///< of one cut
+};
+
+}  // namespace
+
+Box3f clipped_bounds(std::span<const Vec3d> polygon, const Box3f& cell) {
+  PolygonCut cut(polygon);
+  cut.keep_inside(cell);
+  return cut.bounds(cell);
+}
+
+CutBounds cut_bounds(std::span<const Vec3d> polygon, const Box3f& cell, uint32_t axis, float position) {
+  PolygonCut cut(polygon);
+  cut.keep_inside(cell);
+  return cut.halves(cell, axis, position);
 }
 
 Box3f clipped_bounds(const Sphere& sphere, const Box3f& cell) {

@@ -18,6 +18,14 @@ constexpr Box3f outward(Vec3d lower, Vec3d upper) {
 /// within the cell; empty if they do not touch. Always cut from the polygon given, so that errors do not add up.
 Box3f clipped_bounds(std::span<const Vec3d> polygon, const Box3f& cell);
 
+/// The boxes of both sides of a plane; a side that is not reached is empty.
+struct CutBounds {
+  Box3f below, above;
+};
+
+/// clipped_bounds() of the two parts of `cell` on either side of a plane across it, at half the cost.
+CutBounds cut_bounds(std::span<const Vec3d> polygon, const Box3f& cell, uint32_t axis, float position);
+
 /// The tight box of the part of a sphere's surface that lies in `cell`, rounded outward and within the cell; empty if
 /// the surface does not reach it, be the cell outside or inside.
 Box3f clipped_bounds(const Sphere& sphere, const Box3f& cell);

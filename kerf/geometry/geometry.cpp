@@ -25,11 +25,24 @@ Box3f bounds_of(const Sphere& s) {
   return outward(center - reach, center + reach);
 }
 
-Box3f clip_to(const Triangle& t, const Box3f& cell) {
-  return clipped_bounds(std::array{to_double(t.a), to_double(t.b), to_double(t.c)}, cell);
-}
+std::array<Vec3d, 3> corners_of(const Triangle& t) { return {to_double(t.a), to_double(t.b), to_double(t.c)}; }
+
+Box3f clip_to(const Triangle& t, const Box3f& cell) { return clipped_bounds(corners_of(t), cell); }
 Box3f clip_to(const Parallelogram& p, const Box3f& cell) { return clipped_bounds(p.corners(), cell); }
 Box3f clip_to(const Sphere& s, const Box3f& cell) { return clipped_bounds(s, cell); }
+
+CutBounds cut_at(const Triangle& t, const Box3f& cell, uint32_t axis, float position) {
+  return cut_bounds(corners_of(t), cell, axis, position);
+}
+CutBounds cut_at(const Parallelogram& p, const Box3f& cell, uint32_t axis, float position) {
+  return cut_bounds(p.corners(), cell, axis, position);
+}
+CutBounds cut_at(const Sphere& s, const Box3f& cell, uint32_t axis, float position) {
+  Box3f below = cell, above = cell;
+  below.upper[axis] = position;
+  above.lower[axis] = position;
+  return {clipped_bounds(s, below), clipped_bounds(s, above)};
+}
 
 Defect defect_of(const Parallelogram& p) {
   // The far corner must stay in range too.
@@ -74,6 +87,10 @@ Box3f primitive_bounds(const Geometry& geometry, uint32_t primitive) {
 
 Box3f clipped_bounds(const Geometry& geometry, uint32_t primitive, const Box3f& cell) {
   return with_shape(geometry, primitive, [&](const auto& shape) { return clip_to(shape, cell); });
+}
+
+CutBounds cut_bounds(const Geometry& geometry, uint32_t primitive, const Box3f& cell, uint32_t axis, float position) {
+  return with_shape(geometry, primitive, [&](const auto& shape) { return cut_at(shape, cell, axis, position); });
 }
 
 Defect find_defect(const Geometry& geometry, uint32_t primitive) {

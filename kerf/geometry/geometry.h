@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "kerf/base/box3.h"
+#include "kerf/geometry/clip.h"
 #include "kerf/geometry/prepared_ray.h"
 #include "kerf/geometry/shapes.h"
 
@@ -27,6 +28,9 @@ Box3f primitive_bounds(const Geometry& geometry, uint32_t primitive);
 
 /// The tight box, rounded outward, of what of the primitive lies in `cell`; empty where nothing does.
 Box3f clipped_bounds(const Geometry& geometry, uint32_t primitive, const Box3f& cell);
+
+/// clipped_bounds() of the two parts of `cell` on either side of a plane across it.
+CutBounds cut_bounds(const Geometry& geometry, uint32_t primitive, const Box3f& cell, uint32_t axis, float position);
 
 /// What can be wrong with a primitive; `none` also for those that are merely without area.
 enum class Defect { none, bad_index, bad_coordinate, bad_radius };

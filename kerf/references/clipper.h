@@ -6,9 +6,7 @@ namespace kerf {
 
 /// The boxes of what of a reference's primitive lies below and above a plane, within the reference's own box. A side
 /// that the primitive does not reach is empty.
-struct ClippedBoxes {
-  Box3f below, above;
-};
+using ClippedBoxes = CutBounds;
 
 /// How a builder or splitter cuts primitives without knowing what they are: a plain function and what it works on.
 /// It must cut the original primitive each time, not an earlier piece, and round boxes outward.
@@ -25,13 +23,7 @@ struct Clipper {
 inline Clipper geometry_clipper(const std::span<const Geometry>& geometries) {
   return {[](const void* data, const Reference& reference, uint32_t axis, float position) {
             const auto& all = *static_cast<const std::span<const Geometry>*>(data);
-            const Geometry& geometry = all[reference.geometry];
-            ClippedBoxes boxes{reference.bounds(), reference.bounds()};
-            boxes.below.upper[axis] = position;
-            boxes.above.lower[axis] = position;
-            boxes.below = clipped_bounds(geometry, reference.primitive, boxes.below);
-            boxes.above = clipped_bounds(geometry, reference.primitive, boxes.above);
-            return boxes;
+            return cut_bounds(all[reference.geometry], reference.primitive, reference.bounds(), axis, position);
           },
           &geometries};
 }

@@ -5,7 +5,7 @@
 #include <variant>
 
 #include "kerf/build/builders.h"
-#include "kerf/references/splitters.h"
+#include "kerf/choose/splitters.h"
 #include "kerf/scene/structure.h"
 
 namespace kerf {

@@ -76,7 +76,7 @@ class Parser {
     const size_t begin = at_;
     const std::string_view name = parse_name("the name of an option");
     if (!take('=')) {
-      if (name == "auto") fail_at(begin, "automatic splitting is not there yet; give sa_max or budget");
+      if (name == "auto" && set_automatic(stage, begin)) return;
       fail("expected '=' and a value after '" + std::string(name) + "'");
     }
     const std::string_view value = parse_value();
@@ -85,6 +85,20 @@ class Parser {
     } catch (const Error& error) {
       fail_at(begin, error.what());
     }
+  }
+
+  /// "auto" alone stands for that value of the option that takes it; false if there is none.
+  bool set_automatic(Stage& stage, size_t begin) const {
+    for (const OptionSpec& spec : stage.entry->options) {
+      if (!spec.may_be_auto) continue;
+      try {
+        stage.options.set(stage.entry->name, spec.name, kAutomatic);
+      } catch (const Error& error) {
+        fail_at(begin, error.what());
+      }
+      return true;
+    }
+    return false;
   }
 
   /// A number or a word.

@@ -119,6 +119,7 @@ StructureInput Scene::Built::make_input(const Pipeline& pipeline, const BuildOpt
     input.is_split = input.references.size() > kept;
     report.sa_max = split.limit;
     report.capped = split.capped;
+    report.choice = std::move(split.choice);
   }
   report.seconds.split = watch.lap();
   return input;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -8,6 +9,7 @@
 #include "kerf/geometry/geometry.h"
 #include "kerf/geometry/hit.h"
 #include "kerf/geometry/ray.h"
+#include "kerf/references/split_result.h"
 #include "kerf/scene/structure.h"
 #include "kerf/trace/trace_table.h"
 
@@ -31,10 +33,12 @@ struct BuildReport {
   size_t degenerate = 0;                ///< of those: without area, so never hit and left out
   size_t references = 0;                ///< in the leaves
   double references_per_primitive = 0;  ///< R: references / (primitives that were not dropped or left out); 0 if none
-  /// The limit that the splitter used: a surface area, or refine's edge length or area; infinite without a splitter.
+  /// The limit that the splitter used: a surface area, or refine's edge length or area; infinite without a splitter,
+  /// NaN where it was chosen for each part of the scene.
   double sa_max = 0;
-  bool capped = false;  ///< the limit asked for would have passed the cap on references, so it was raised
-  size_t bytes = 0;     ///< of what rays are traced through, without the caller's memory
+  bool capped = false;                ///< the limit asked for would have passed the cap on references, so it was raised
+  std::optional<SplitChoice> choice;  ///< of automatic splitting: how far it went, and why
+  size_t bytes = 0;                   ///< of what rays are traced through, without the caller's memory
   size_t nodes = 0, leaves = 0;
   uint32_t depth = 0;         ///< edges from the root to the deepest leaf
   uint32_t largest_leaf = 0;  ///< slots

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kShares[] = {0.1, 0.25, 0.5, 0.75, 0.9, 1};
 constexpr double kCostlyShare = 0.5;
-constexpr const char *kPlain = "binned_sah", *kSplit = "early_split(budget=1.5)+binned_sah";
+constexpr const char *kPlain = "binned_sah", *kSplit = "early_split(auto)+binned_sah";
 constexpr size_t kMostTimedRays = 1 << 15;
 constexpr size_t kMostPixels = 1 << 24;
 constexpr size_t kBlock = 4096;

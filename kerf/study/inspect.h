@@ -12,7 +12,7 @@
 
 namespace kerf {
 
-/// early_split(budget=1.5)+binned_sah, or binned_sah where the structure inspected has more references than primitives.
+/// early_split(auto)+binned_sah, or binned_sah where the structure inspected has more references than primitives.
 inline constexpr std::string_view kAutomaticTrial = "auto";
 inline constexpr std::string_view kNoTrial = "none";
 

@@ -252,6 +252,18 @@ void add_structure(Text& text, const Inspection& i) {
   add_histogram(text, i.leaves_by_size, true);
 }
 
+/// Automatic splitting: the predicted cost as it fell, and why it ended there.
+void add_choice(Text& text, const BuildReport& report) {
+  if (!report.choice) return;
+  const std::vector<SplitChoice::Step>& curve = report.choice->curve;
+  text.line("\nHow far {} went: the predicted cost of a random line over references per primitive", report.structure);
+  for (const SplitChoice::Step& step : curve) {
+    const auto letters = static_cast<size_t>(std::ceil(kLongestBar * share_of(step.cost, curve.front().cost)));
+    text.line("{:>11.3f} {:>11} {}", step.references_per_primitive, number(step.cost), std::string(letters, '#'));
+  }
+  text.line("{}", report.choice->reason);
+}
+
 }  // namespace
 
 std::vector<std::string> findings(const Inspection& i) {
@@ -282,6 +294,8 @@ std::string inspection_text(const Inspection& i) {
   }
   add_wasted(text, i);
   add_structure(text, i);
+  add_choice(text, i.report);
+  if (i.trial) add_choice(text, i.trial->report);
   return text.take();
 }
 

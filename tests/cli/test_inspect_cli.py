@@ -36,7 +36,7 @@ def test_names_the_sliver_in_text():
     table = result.stdout.split("that rays test most")[1].splitlines()
     assert table[2].split()[:2] == ["1", "800"]
     assert table[3].strip() == "(0, 0, -1) (20, 20, 5) (20, 19.99, 5)"
-    for part in ("Tried: early_split(budget=1.5)+binned_sah", "Depth of leaves", "Slots in leaves", "bytes of the geometry"):
+    for part in ("Tried: early_split(sa_max=auto)+binned_sah", "Depth of leaves", "Slots in leaves", "bytes of the geometry"):
         assert part in result.stdout
 
 

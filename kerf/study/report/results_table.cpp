@@ -104,7 +104,8 @@ void write_cell(Markup& out, const StudyResult& result, const Shown& shown) {
 
 void write_row_head(Markup& out, const StudyResult& result, size_t number, TableRows rows) {
   if (rows == TableRows::limits) {
-    out.element("th", {{"scope", "row"}, {"data-v", script_number(result.sa_max)}}, chosen_text(result.sa_max));
+    out.element("th", {{"scope", "row"}, {"data-v", script_number(result.sa_max)}},
+                std::isnan(result.sa_max) ? "auto" : chosen_text(result.sa_max));
     return;
   }
   out.open("th", {{"scope", "row"}, {"data-v", std::to_string(number)}});

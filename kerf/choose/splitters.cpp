@@ -1,6 +1,7 @@
-#include "kerf/references/splitters.h"
+#include "kerf/choose/splitters.h"
 
 #include "kerf/base/error.h"
+#include "kerf/choose/automatic_split.h"
 #include "kerf/references/early_split.h"
 #include "kerf/references/refine.h"
 
@@ -12,9 +13,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kMostPerPrimitive = 1000;
 
 constexpr OptionSpec kEarlySplitOptions[] = {
-    {"sa_max", "surface area above which a box is cut, all six faces, squared scene units", kInfinity, 0, kInfinity,
-     false, true},
-    {"cap", "references per primitive, on average, that are never passed", 16, 1, kMostPerPrimitive},
+    with_auto({"sa_max", "surface area above which a box is cut, all six faces, squared scene units; auto: chosen",
+               kAutomatic, 0, kInfinity, false, true}),
+    {"cap", "references per primitive, on average, that are never passed; 2 with sa_max=auto", 16, 1,
+     kMostPerPrimitive},
     {"budget", "instead of sa_max: as finely as this many references per primitive allow", 1.5, 1, kMostPerPrimitive},
 };
 
@@ -27,6 +29,11 @@ SplitResult split_early(const SplitInput& input, const OptionValues& values) {
         early_split(input.whole, input.clipper, EarlySplit::with_budget(values["budget"]), input.limit);
     result.capped = false;  // no limit was asked for
     return result;
+  }
+  if (is_automatic(values["sa_max"])) {
+    AutomaticSplit automatic;
+    if (values.is_set("cap")) automatic.cap = values["cap"];
+    return split_automatically(input, automatic);
   }
   return early_split(input.whole, input.clipper, {values["sa_max"], values["cap"]}, input.limit);
 }
