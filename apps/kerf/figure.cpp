@@ -79,7 +79,7 @@ Part draw_wireframe(SceneInput& input, const Arguments& a, std::span<const std::
 const Kind kKinds[] = {
     {"heat", "480x320", true,
      [] {
-       return std::vector<std::string>{"binned_sah", "early_split(budget=1.5)+binned_sah"};
+       return std::vector<std::string>{"binned_sah", "early_split(auto)+binned_sah"};
      },
      nullptr, draw_heat},
     {"levels", "260x260", false, splitting_rows, crossing_triangles, draw_levels},
@@ -173,7 +173,7 @@ int figure(Arguments a) {
 void add_figure(CLI::App& app, std::function<int()>& run) {
   CLI::App* command = app.add_subcommand("figure", "Draws structures as in papers: heat maps, boxes, wireframes.");
   command->footer(
-      "Examples: kerf figure heat sponza.ply --rows binned_sah,'early_split(budget=1.5)+binned_sah' -o heat.png\n"
+      "Examples: kerf figure heat sponza.ply --rows binned_sah,'early_split(auto)+binned_sah' -o heat.png\n"
       "          kerf figure levels -o levels.svg\n"
       "          kerf figure leaves room.yaml --rows kd_sah,binned_sah --boxes 1000\n"
       "          kerf figure wireframe bunny.ply engine.ply --size 640x640 -o models.png");

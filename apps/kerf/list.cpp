@@ -60,7 +60,7 @@ void print_menu() {
   fmt::print(
       "A structure is a pipeline: perhaps a splitter, then a builder and perhaps a layout, or a structure, joined\n"
       "by '+', such as\n"
-      "  early_split(budget=1.5)+binned_sah(bins=32)\n");
+      "  early_split(auto)+binned_sah(bins=32)\n");
   std::string_view kind;
   for (const MenuEntry& entry : menu()) {
     if (entry.kind != kind) fmt::print("\n{}s\n", kind = entry.kind);

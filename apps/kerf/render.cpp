@@ -179,7 +179,7 @@ void add_render(CLI::App& app, std::function<int()>& run) {
   command->footer(
       "Examples: kerf render room.yaml --spp 256\n"
       "          kerf render machine.glb -o machine.exr --eye 3,2,4 --look-at 0,0,0\n"
-      "          kerf render sponza.ply -o depth.pfm --view depth --structure 'early_split(budget=1.5)+binned_sah'");
+      "          kerf render sponza.ply -o depth.pfm --view depth --structure 'early_split(auto)+binned_sah'");
   auto a = std::make_shared<Arguments>();
   command->add_option("-o,--output", a->output,
                       "Picture to write: .png to look at, .exr or .pfm for the values themselves "

@@ -135,7 +135,7 @@ void add_study(CLI::App& app, std::function<int()>& run) {
   CLI::App* command = app.add_subcommand(
       "study", "Builds structures over the same scene, shoots the same rays through them and compares what they cost.");
   command->footer(
-      "Examples: kerf study hall.ply --rows 'binned_sah,early_split(budget=1.5)+binned_sah,kd_sah' --html hall.html\n"
+      "Examples: kerf study hall.ply --rows 'binned_sah,early_split(auto)+binned_sah,kd_sah' --html hall.html\n"
       "          kerf study hall.ply --sweep sa_max --rays primary,diffuse --json curve.json\n"
       "          kerf study --paper --html paper.html\n"
       "R: references per triangle; T_build: seconds; N_node, N_tri: nodes and triangle tests per ray; T_ray: seconds\n"

@@ -53,7 +53,7 @@ struct BuildReport {
 ///
 ///     kerf::Scene scene;
 ///     scene.add(kerf::TriangleMesh{vertices, triangles});
-///     scene.build({.structure = "early_split(budget=1.5)+binned_sah"});
+///     scene.build({.structure = "early_split(auto)+binned_sah"});
 ///     kerf::Hit hit = scene.closest_hit({.origin = {0, 0, 5}, .direction = {0, 0, -1}});
 ///
 /// The scene looks at the caller's memory and copies none of it: vertices and indices must stay unchanged until the
