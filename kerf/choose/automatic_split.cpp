@@ -154,9 +154,11 @@ class Attempts {
 
   /// The pieces for `strictness` times the gain; nothing if they are too many.
   std::optional<GuidedPieces> at(double strictness) {
-    rules_.cell_gain = GuideRules{}.cell_gain * strictness;
+    // What the whole scene gains goes first: it is what few references are best spent on.
+    const double more = strictness * strictness * strictness;
+    rules_.cell_gain = GuideRules{}.cell_gain * more;
     rules_.scene_gain = GuideRules{}.scene_gain * strictness;
-    rules_.plane_gain = kPlaneGain * (strictness - 1);
+    rules_.plane_gain = kPlaneGain * (more - 1);
     GuidedPieces pieces = guide_splits(to_cut_, input_.geometries, input_.clipper, rules_, input_.limit);
     size_t count = input_.whole.size() - to_cut_.size();
     for (const auto& cell : pieces.cells) count += cell.size();
