@@ -42,7 +42,7 @@ class Search {
   }
 
  private:
-  static constexpr uint32_t kLongest = 1024;  // nodes looked below, at most: the work is bounded
+  static constexpr uint32_t kLongest = 128;  // nodes looked below, at most: the work is bounded
 
   /// A node to look below, and what a place there saves, less what it costs itself.
   struct Waiting {
