@@ -233,8 +233,8 @@ class MeshScene {
                     "bytes"_a = r.bytes, "nodes"_a = r.nodes, "leaves"_a = r.leaves, "depth"_a = r.depth,
                     "largest_leaf"_a = r.largest_leaf, "sah_cost"_a = r.sah_cost, "tree_hash"_a = r.tree_hash,
                     "seconds"_a = py::dict("references"_a = r.seconds.references, "split"_a = r.seconds.split,
-                                           "build"_a = r.seconds.build, "layout"_a = r.seconds.layout,
-                                           "total"_a = r.seconds.total));
+                                           "build"_a = r.seconds.build, "optimise"_a = r.seconds.optimise,
+                                           "layout"_a = r.seconds.layout, "total"_a = r.seconds.total));
   }
 
  private:

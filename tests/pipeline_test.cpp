@@ -33,9 +33,11 @@ TEST(Menu, EveryEntryHasAUniqueNameAndASentence) {
 }
 
 TEST(Pipeline, SpellsItselfBack) {
-  for (const char* text : {"binned_sah", "brute_force", "early_split(sa_max=10)+binned_sah(bins=32)",
-                           "early_split(budget=1.5)+sweep_sah(leaf=1,depth=40)",
-                           "early_split(sa_max=1e-30)+object_median", "early_split(sa_max=inf)+spatial_median"}) {
+  for (const char* text :
+       {"binned_sah", "brute_force", "early_split(sa_max=10)+binned_sah(bins=32)",
+        "early_split(budget=1.5)+sweep_sah(leaf=1,depth=40)", "early_split(sa_max=1e-30)+object_median",
+        "sweep_sah+reinsertion", "binned_sah+reinsertion(iterations=2)+reinsertion+bvh2",
+        "early_split(sa_max=inf)+spatial_median"}) {
     EXPECT_EQ(parse_pipeline(text).text(), text);
   }
   EXPECT_EQ(parse_pipeline(" early_split ( cap = 4 , sa_max = 10.0 ) + binned_sah ( ) ").text(),
@@ -52,6 +54,11 @@ TEST(Pipeline, RefusesWithTheColumnAndTheNearestWord) {
       refusal("early_split(samax=10)+binned_sah"),
       "structure 'early_split(samax=10)+binned_sah', column 13: early_split: unknown option 'samax'; did you mean "
       "'sa_max'?");
+  EXPECT_EQ(refusal("early_split(budget=2)+reinsertion"),
+            "structure 'early_split(budget=2)+reinsertion', column 23: a builder must stand before reinsertion, as in "
+            "binned_sah+reinsertion");
+  EXPECT_EQ(refusal("binned_sah+bvh2+reinsertion"),
+            "structure 'binned_sah+bvh2+reinsertion', column 17: nothing can follow a layout");
   EXPECT_NE(refusal("zzz").find("expected early_split, refine, binned_sah"), std::string::npos);
 }
 
@@ -86,6 +93,14 @@ TEST(Pipeline, RefusesEveryKindOfMistake) {
                            "early_split(auto=3)+binned_sah",
                            "early_split(sa_max=automatic)+binned_sah",
                            "brute_force(leaf=4)",
+                           "reinsertion",
+                           "reinsertion+binned_sah",
+                           "early_split(budget=2)+reinsertion",
+                           "kd_sah+reinsertion",
+                           "binned_sah+reinsertion+binned_sah",
+                           "binned_sah+reinsertion+kd_sah",
+                           "binned_sah+bvh2+reinsertion",
+                           "binned_sah+bvh2+bvh2",
                            "binned_sah,sweep_sah"}) {
     EXPECT_FALSE(refusal(text).empty()) << text;
   }

@@ -163,6 +163,8 @@ void run_under_limit(const Pipeline& pipeline, size_t limited, const WorkLimit& 
       OptionValues all = options;
       if (i + 1 < pipeline.stages.size() && !all.is_set("leaf")) all.set(entry->name, "leaf", 1);  // fits any layout
       bvh = (*builder)->build({references, geometry_clipper(geometries), allowed}, all);
+    } else if (const auto* optimiser = std::get_if<const OptimiserEntry*>(&entry->entry)) {
+      bvh = (*optimiser)->optimise(bvh, options, allowed);
     } else if (const auto* layout = std::get_if<const LayoutEntry*>(&entry->entry)) {
       (*layout)->make(bvh, {geometries, {}, false, allowed}, options);
     } else {

@@ -58,9 +58,9 @@ nlohmann::ordered_json menu_json() {
 
 void print_menu() {
   fmt::print(
-      "A structure is a pipeline: perhaps a splitter, then a builder and perhaps a layout, or a structure, joined\n"
-      "by '+', such as\n"
-      "  early_split(auto)+binned_sah(bins=32)\n");
+      "A structure is a pipeline: perhaps a splitter, then a builder, perhaps optimisers and perhaps a layout, or a\n"
+      "structure, joined by '+', such as\n"
+      "  early_split(auto)+binned_sah(bins=32)+reinsertion\n");
   std::string_view kind;
   for (const MenuEntry& entry : menu()) {
     if (entry.kind != kind) fmt::print("\n{}s\n", kind = entry.kind);
@@ -94,7 +94,8 @@ void print_menu() {
 
 void add_list(CLI::App& app, std::function<int()>& run) {
   CLI::App* command = app.add_subcommand(
-      "list", "Prints all splitters, builders, structures, views, materials, models and their formats.");
+      "list",
+      "Prints all splitters, builders, optimisers, layouts, structures, views, materials, models and their formats.");
   command->footer("Example: kerf list --json -");
   auto json = std::make_shared<std::string>();
   command->add_option("--json", *json, "Write the menu to this file as JSON; '-' is standard output");

@@ -176,6 +176,7 @@ Json report_json(const BuildReport& r) {
            {{"references", r.seconds.references},
             {"split", r.seconds.split},
             {"build", r.seconds.build},
+            {"optimise", r.seconds.optimise},
             {"layout", r.seconds.layout},
             {"total", r.seconds.total}}}};
 }

@@ -18,6 +18,7 @@ std::vector<MenuEntry> joined() {
   std::vector<MenuEntry> all;
   for (const SplitterEntry& entry : splitters()) all.push_back(make_entry("splitter", entry));
   for (const BuilderEntry& entry : builders()) all.push_back(make_entry("builder", entry));
+  for (const OptimiserEntry& entry : optimisers()) all.push_back(make_entry("optimiser", entry));
   for (const LayoutEntry& entry : layouts()) all.push_back(make_entry("layout", entry));
   for (const StructureEntry& entry : structures()) all.push_back(make_entry("structure", entry));
   return all;
@@ -46,6 +47,7 @@ std::span<const MenuEntry> menu() { return entries(); }
 
 void add_to_menu(const SplitterEntry& entry) { add(make_entry("splitter", entry)); }
 void add_to_menu(const BuilderEntry& entry) { add(make_entry("builder", entry)); }
+void add_to_menu(const OptimiserEntry& entry) { add(make_entry("optimiser", entry)); }
 void add_to_menu(const LayoutEntry& entry) { add(make_entry("layout", entry)); }
 void add_to_menu(const StructureEntry& entry) { add(make_entry("structure", entry)); }
 

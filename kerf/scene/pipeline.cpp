@@ -57,7 +57,7 @@ class Parser {
     skip_spaces();
     const size_t begin = at_;
     starts_.push_back(begin);
-    const std::string_view name = parse_name("the name of a splitter, builder, layout or structure");
+    const std::string_view name = parse_name("the name of a splitter, builder, optimiser, layout or structure");
     const std::span<const MenuEntry> all = menu();
     const auto found = std::find_if(all.begin(), all.end(), [&](const MenuEntry& entry) { return entry.name == name; });
     if (found == all.end()) fail_at(begin, unknown(name));
@@ -123,13 +123,15 @@ class Parser {
       const std::string_view kind = pipeline.stages[i].entry->kind;
       const std::string name(pipeline.stages[i].entry->name);
       const std::string_view before = i > 0 ? pipeline.stages[i - 1].entry->kind : "";
-      if (kind == "layout" && before != "builder") {
-        fail_at(starts_[i], "a builder must stand right before " + name + ", as in binned_sah+" + name);
+      const bool takes_tree = pipeline.stages[i].entry->takes_tree();
+      if (takes_tree && before != "builder" && before != "optimiser") {
+        if (before == "layout") fail_at(starts_[i], "nothing can follow a layout");
+        fail_at(starts_[i], "a builder must stand before " + name + ", as in binned_sah+" + name);
       }
       // Its cap counts references for each primitive, and to a second one pieces would pass for primitives.
       if (kind == "splitter" && before == "splitter") fail_at(starts_[i], "references can be split once only");
-      if (kind != "layout" && !before.empty() && before != "splitter") {
-        fail_at(starts_[i], "only a layout can follow a builder, and nothing a layout or structure");
+      if (!takes_tree && !before.empty() && before != "splitter") {
+        fail_at(starts_[i], "only optimisers and a layout can follow a builder, and nothing a layout or structure");
       }
       if (i == last && kind == "splitter") {
         fail_at(starts_[i], "a builder must follow " + name + ", as in " + name + "+binned_sah");

@@ -14,8 +14,8 @@ struct Stage {
   OptionValues options;
 };
 
-/// What is done to make a structure, in the order of the flow: perhaps a splitter, then a builder and perhaps a
-/// layout, or a structure.
+/// What is done to make a structure, in the order of the flow: perhaps a splitter, then a builder, perhaps
+/// optimisers and perhaps a layout, or a structure.
 struct Pipeline {
   std::vector<Stage> stages;
 

@@ -1,5 +1,6 @@
 #include "kerf/scene/scene.h"
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <utility>
@@ -54,15 +55,18 @@ void run_batch(std::span<const Ray> rays, std::span<Result> results, int threads
   with_threads(threads, [&] { parallel_for(rays.size(), 1024, query); });
 }
 
-/// The builder's options, with leaves as small as the layout needs them.
-OptionValues options_for(const Stage& builder, const LayoutEntry& layout) {
-  OptionValues options = builder.options;
-  if (layout.leaf_size == 0) return options;
+/// The options of a builder or optimiser, with leaves as small as the layout needs them.
+OptionValues options_for(const Stage& stage, const LayoutEntry& layout) {
+  OptionValues options = stage.options;
+  const auto is_leaf = [](const OptionSpec& spec) { return spec.name == "leaf"; };
+  const std::span<const OptionSpec> specs = stage.entry->options;
+  if (layout.leaf_size == 0 || std::none_of(specs.begin(), specs.end(), is_leaf)) return options;
+  const std::string name(stage.entry->name);
   if (!options.is_set("leaf")) {
-    options.set(builder.entry->name, "leaf", layout.leaf_size);
+    options.set(name, "leaf", layout.leaf_size);
   } else if (options["leaf"] > layout.leaf_size) {
     throw Error(ErrorCode::invalid_option, std::string(layout.name),
-                "it needs leaves of at most " + std::to_string(layout.leaf_size) + ": leave out the builder's 'leaf'");
+                "it needs leaves of at most " + std::to_string(layout.leaf_size) + ": leave out 'leaf' of " + name);
   }
   return options;
 }
@@ -96,7 +100,7 @@ Scene::Built::Built(std::vector<Geometry> added, const Pipeline& pipeline, const
   make_structure(std::move(input), std::span(pipeline.stages).subspan(first), watch);
   describe(kept);
   const auto& s = report.seconds;
-  report.seconds.total = s.references + s.split + s.build + s.layout;
+  report.seconds.total = s.references + s.split + s.build + s.optimise + s.layout;
 }
 
 StructureInput Scene::Built::make_input(const Pipeline& pipeline, const BuildOptions& options, Stopwatch& watch) {
@@ -125,23 +129,30 @@ StructureInput Scene::Built::make_input(const Pipeline& pipeline, const BuildOpt
   return input;
 }
 
-/// `stages`: a structure, or a builder with or without a layout.
+/// `stages`: a structure, or a builder, then any number of optimisers, then a layout or none.
 void Scene::Built::make_structure(StructureInput input, std::span<const Stage> stages, Stopwatch& watch) {
   if (const auto* entry = std::get_if<const StructureEntry*>(&stages[0].entry->entry)) {
     structure = (*entry)->build(std::move(input), stages[0].options);
     report.seconds.build = watch.lap();
     return;
   }
-  const auto& builder = *std::get<const BuilderEntry*>(stages[0].entry->entry);
-  const LayoutEntry& layout =
-      stages.size() > 1 ? *std::get<const LayoutEntry*>(stages[1].entry->entry) : layouts().front();
-  const OptionValues options = options_for(stages[0], layout);
+  const auto* last = std::get_if<const LayoutEntry*>(&stages.back().entry->entry);
+  const LayoutEntry& layout = last != nullptr ? **last : layouts().front();
+  const std::span<const Stage> makers = stages.first(stages.size() - (last != nullptr ? 1 : 0));
+  const auto& builder = *std::get<const BuilderEntry*>(makers[0].entry->entry);
   const std::span<const Geometry> all = geometries;
-  Bvh bvh = builder.build({std::exchange(input.references, {}), geometry_clipper(all), input.limit}, options);
+  Bvh bvh = builder.build({std::exchange(input.references, {}), geometry_clipper(all), input.limit},
+                          options_for(makers[0], layout));
   input.is_split = bvh.slots.size() > report.primitives - report.invalid - report.degenerate;  // some builders split
   if (input.is_split) mark_repeated(bvh, geometries);
   report.seconds.build = watch.lap();
-  structure = layout.make(std::move(bvh), input, stages.size() > 1 ? stages[1].options : OptionValues(layout.options));
+  for (const Stage& stage : makers.subspan(1)) {
+    const auto& optimiser = *std::get<const OptimiserEntry*>(stage.entry->entry);
+    bvh = optimiser.optimise(std::move(bvh), options_for(stage, layout), input.limit);
+  }
+  report.seconds.optimise = watch.lap();
+  structure =
+      layout.make(std::move(bvh), input, last != nullptr ? stages.back().options : OptionValues(layout.options));
   report.seconds.layout = watch.lap();
 }
 

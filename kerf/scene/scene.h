@@ -17,8 +17,9 @@ namespace kerf {
 
 /// How Scene::build() works.
 struct BuildOptions {
-  /// The pipeline: perhaps a splitter, then a builder and perhaps a layout, or a structure, joined by '+', options in
-  /// parentheses; see menu().
+  /// The pipeline: perhaps a splitter, then a builder, perhaps optimisers and perhaps a layout, or a structure, joined
+  /// by
+  /// '+', options in parentheses; see menu().
   std::string structure = "binned_sah";
   int threads = 0;            ///< 0: as many as the caller's arena has
   bool skip_invalid = false;  ///< drop primitives that are not finite or have a bad index, instead of an error
@@ -45,7 +46,7 @@ struct BuildReport {
   double sah_cost = 0;        ///< see Structure::cost()
   uint64_t tree_hash = 0;     ///< equal for equal trees; 0 without a tree
   struct Seconds {
-    double references = 0, split = 0, build = 0, layout = 0, total = 0;
+    double references = 0, split = 0, build = 0, optimise = 0, layout = 0, total = 0;
   } seconds;
 };
 

@@ -285,7 +285,7 @@ std::vector<std::string> all_rows() {
     const bool is_splitting = name != "embree_high" && has_option(entry, "budget");
     const std::string stage = is_splitting ? name + "(budget=1.5)" : name;
     rows.push_back(entry.kind == "splitter" ? stage + "+binned_sah"
-                   : entry.kind == "layout" ? "binned_sah+" + stage
+                   : entry.takes_tree()     ? "binned_sah+" + stage
                                             : stage);
   }
   return rows;

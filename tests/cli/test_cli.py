@@ -128,14 +128,14 @@ def test_json_says_what_was_done():
 def test_docs_name_every_structure():
     text = (pathlib.Path(__file__).parents[2] / "docs" / "structures.md").read_text()
     for entry in json.loads(kerf("list", "--json", "-").stdout):
-        if entry["kind"] in ("splitter", "builder", "layout", "structure"):
+        if entry["kind"] in ("splitter", "builder", "optimiser", "layout", "structure"):
             assert f"`{entry['name']}`" in text, entry["name"]
 
 
 def test_list_names_every_entry():
     menu = json.loads(kerf("list", "--json", "-").stdout)
     names = [entry["name"] for entry in menu]
-    assert {entry["kind"] for entry in menu} == {"splitter", "builder", "layout", "structure", "view", "material", "model", "format"}
+    assert {entry["kind"] for entry in menu} == {"splitter", "builder", "optimiser", "layout", "structure", "view", "material", "model", "format"}
     assert kerf("list", "--quiet", "--threads", "2").returncode == 0
     for name in ["early_split", "spatial_median", "object_median", "sweep_sah", "binned_sah", "brute_force", "beauty",
                  "glass", ".obj"]:

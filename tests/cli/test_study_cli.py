@@ -169,7 +169,7 @@ def test_growth_goes_by_tens_and_all_rows_are_everything_in_the_menu():
     names = {row["row"] for row in study("slivers.obj", "--rows", "all")}
     menu = json.loads(kerf("list", "--json", "-").stdout)
     for entry in menu:
-        if entry["kind"] in ("splitter", "builder", "layout", "structure") and entry["name"] not in ("bvh2", "brute_force"):
+        if entry["kind"] in ("splitter", "builder", "optimiser", "layout", "structure") and entry["name"] not in ("bvh2", "brute_force"):
             assert any(entry["name"] in name for name in names), entry["name"]
 
 

@@ -273,7 +273,7 @@ def test_report_bounds_menu_version():
     report = scene.report
     assert report["structure"] == "early_split(budget=2)+binned_sah"
     assert report["primitives"] == 2 and report["references"] >= 2 and report["bytes"] > 0 and not report["capped"]
-    assert set(report["seconds"]) == {"references", "split", "build", "layout", "total"}
+    assert set(report["seconds"]) == {"references", "split", "build", "optimise", "layout", "total"}
     assert scene.bounds.dtype == np.float32 and scene.bounds.tolist() == [[0, 0, 0], [4, 4, 0]]
     by_name = {entry["name"]: entry for entry in kerf.menu()}
     assert {"early_split", "binned_sah", "brute_force"} <= set(by_name)
@@ -281,7 +281,7 @@ def test_report_bounds_menu_version():
     assert any(option["name"] == "budget" for option in by_name["early_split"]["options"])
     for name, entry in by_name.items():
         if entry["kind"] != "splitter":
-            structure = f"binned_sah+{name}" if entry["kind"] == "layout" else name
+            structure = f"binned_sah+{name}" if entry["kind"] in ("optimiser", "layout") else name
             assert kerf.Scene(SQUARE, FACES, structure).any_hit([1, 3, 5], DOWN)
     assert re.fullmatch(r"\d+\.\d+\.\d+", kerf.__version__)
 

@@ -36,16 +36,16 @@ std::vector<std::string> pipelines(Extent extent) {
   for (const MenuEntry& entry : menu()) {
     const std::string name(entry.name);
     const bool is_structure = entry.kind == "builder" || entry.kind == "structure";
-    const std::string before = entry.kind == "layout" ? "binned_sah+" : "";
+    const std::string before = entry.takes_tree() ? "binned_sah+" : "";
     if (entry.kind == "splitter") all.push_back(splitting_text(name) + "+binned_sah");
     if (is_structure) all.push_back(name);
-    if (entry.kind == "layout") all.push_back(before + splitting_text(name));
+    if (entry.takes_tree()) all.push_back(before + splitting_text(name));
     if (extent == Extent::menu || entry.kind == "splitter") continue;
     for (const std::string& variant : variants(entry)) all.push_back(before + variant);
     const auto* structure = std::get_if<const StructureEntry*>(&entry.entry);
     if (structure != nullptr && (*structure)->takes_pieces) all.push_back(early + name);
     if (extent == Extent::variants || structure != nullptr) continue;
-    all.push_back(early + before + (entry.kind == "layout" ? splitting_text(name) : name));
+    all.push_back(early + before + (entry.takes_tree() ? splitting_text(name) : name));
   }
   return all;
 }
