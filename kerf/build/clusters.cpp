@@ -35,6 +35,16 @@ struct UnitBox {
 constexpr float lesser(float a, float b) { return a < b ? a : b; }
 constexpr float greater(float a, float b) { return a > b ? a : b; }
 
+/// Where an area is less than the least so far, it takes its place. Without a branch, so that it is vectorized.
+void offer(const float* __restrict areas, uint32_t offset, size_t count, float* __restrict least,
+           uint32_t* __restrict offsets) {
+  for (size_t i = 0; i < count; ++i) {
+    const uint32_t is_less = areas[i] < least[i] ? ~0U : 0;
+    least[i] = lesser(areas[i], least[i]);
+    offsets[i] ^= (offsets[i] ^ offset) & is_less;
+  }
+}
+
 }  // namespace
 
 Clusters::Clusters(std::span<const Reference> references) {
@@ -80,7 +90,7 @@ void Clusters::find_partners(uint32_t radius, std::vector<uint32_t>& partners) c
 }
 
 /// Half the area around clusters i and i + distance, for each i in [begin, end).
-void Clusters::areas(size_t begin, size_t end, size_t distance, float* out) const {
+void Clusters::areas(size_t begin, size_t end, size_t distance, float* __restrict out) const {
   const auto side = [&](size_t number) { return sides_[number].data() + begin; };
   const float *x0 = side(0), *y0 = side(1), *z0 = side(2), *x1 = side(3), *y1 = side(4), *z1 = side(5);
   for (size_t i = 0, j = distance; i < end - begin; ++i, ++j) {
@@ -95,34 +105,28 @@ void Clusters::areas(size_t begin, size_t end, size_t distance, float* out) cons
 /// ties, for only a lesser area takes the place of another.
 void Clusters::find_partners(size_t begin, size_t end, uint32_t radius, uint32_t* partners) const {
   std::array<float, kTile> least;
-  std::array<uint32_t, kTile> partner;
+  std::array<uint32_t, kTile> offset;  // to the partner; wraps around for one before
   std::array<float, kTile + kMostRadius> area;
+  least.fill(std::numeric_limits<float>::infinity());
+  offset.fill(0);
   const size_t count = end - begin;
-  for (size_t i = 0; i < count; ++i) {
-    least[i] = std::numeric_limits<float>::infinity();
-    partner[i] = static_cast<uint32_t>(begin + i);
-  }
-  const auto offer = [&](size_t i, float a, size_t other) {
-    const bool better = a < least[i];
-    least[i] = better ? a : least[i];
-    partner[i] = better ? static_cast<uint32_t>(other) : partner[i];
-  };
-  const size_t farthest = std::min<size_t>(radius, size() - 1);
-  for (size_t distance = 1; distance <= farthest; ++distance) {
-    const size_t first = begin - std::min(begin, distance), last = std::min(end, size() - distance);
+  const auto farthest = static_cast<uint32_t>(std::min<size_t>(radius, size() - 1));
+  for (uint32_t distance = 1; distance <= farthest; ++distance) {
+    const size_t first = begin - std::min<size_t>(begin, distance), last = std::min(end, size() - distance);
     areas(first, last, distance, area.data());
-    if (distance == 1) {  // tiles begin at even places
+    const float* own = area.data() + (begin - first);  // of the tile's first cluster and the one behind it
+    if (distance == 1) {                               // tiles begin at even places
       for (size_t i = 0; i + 1 < count; i += 2) {
-        offer(i, area[begin + i - first], begin + i + 1);
-        offer(i + 1, area[begin + i - first], begin + i);
+        least[i] = least[i + 1] = own[i];
+        offset[i] = 1;
+        offset[i + 1] = 0U - 1;
       }
     }
     const size_t lowest = first + distance - begin;  // the first that has one `distance` before it
-    const size_t behind = last - std::min(last, begin);
-    for (size_t i = lowest; i < count; ++i) offer(i, area[i - lowest], begin + i - distance);
-    for (size_t i = 0; i < behind; ++i) offer(i, area[begin - first + i], begin + i + distance);
+    if (lowest < count) offer(area.data(), 0U - distance, count - lowest, &least[lowest], &offset[lowest]);
+    if (last > begin) offer(own, distance, last - begin, least.data(), offset.data());
   }
-  std::copy_n(partner.begin(), count, partners);
+  for (size_t i = 0; i < count; ++i) partners[i] = static_cast<uint32_t>(begin + i) + offset[i];
 }
 
 }  // namespace kerf
