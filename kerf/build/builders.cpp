@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "kerf/build/clusters.h"
 #include "kerf/build/top_down.h"
 
 namespace kerf {
@@ -33,6 +34,9 @@ constexpr auto kInsertionOptions = with_shared(
      {"search", "places tried: on the way of least growth, or all that may be better", 1, kInsertionSearches},
      kSeed});
 
+constexpr auto kPlocOptions =
+    with_shared({{"radius", "how far along the curve the nearest is looked for", 16, 1, Clusters::kMostRadius, true}});
+
 constexpr BuilderEntry kBuilders[] = {
     {"binned_sah", "the cheapest of a few planes by the surface area heuristic",
      "Wald: On fast Construction of SAH-based Bounding Volume Hierarchies, 2007", kBinnedOptions, build_binned_sah},
@@ -52,6 +56,13 @@ constexpr BuilderEntry kBuilders[] = {
     {"insertion", "one reference after another, each where it adds least to the cost",
      "Goldsmith, Salmon: Automatic Creation of Object Hierarchies for Ray Tracing, 1987 (search=way)",
      kInsertionOptions, build_insertion},
+    {"lbvh", "cut where the highest bit of a space-filling curve changes: the fastest to build",
+     "Lauterbach et al.: Fast BVH Construction on GPUs, 2009; Karras: Maximizing Parallelism in the Construction of "
+     "BVHs, Octrees, and k-d Trees, 2012",
+     TopDownOptions::kSpecs, build_lbvh},
+    {"ploc", "joins those that are each other's nearest along a space-filling curve, until one is left",
+     "Meister, Bittner: Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy Construction, 2018",
+     kPlocOptions, build_ploc},
 };
 
 }  // namespace

@@ -42,5 +42,7 @@ Bvh build_sweep_sah(BuildInput input, const OptionValues& options);
 Bvh build_insertion(BuildInput input, const OptionValues& options);
 Bvh build_random_top_down(BuildInput input, const OptionValues& options);
 Bvh build_oversize_shelves(BuildInput input, const OptionValues& options);
+Bvh build_lbvh(BuildInput input, const OptionValues& options);
+Bvh build_ploc(BuildInput input, const OptionValues& options);
 
 }  // namespace kerf
