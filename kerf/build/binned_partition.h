@@ -37,8 +37,9 @@ struct Bin {
     }
     count += other.count;
   }
+  Box3f box() const { return {{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}}; }
   /// Area times count.
-  double cost() const { return half_area({{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}}) * count; }
+  double cost() const { return half_area(box()) * count; }
 };
 
 /// Which slice a reference's centre lies in, along each axis.

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "kerf/build/clusters.h"
+#include "kerf/build/spatial_bins.h"
 #include "kerf/build/top_down.h"
 
 namespace kerf {
@@ -25,6 +26,12 @@ constexpr OptionSpec kSeed = {"seed", "another number gives another tree", 1, 0,
 constexpr auto kBinnedOptions = with_shared({kBins, {"planes", "the same as bins = planes + 1", 31, 1, 255, true}});
 constexpr auto kShelvesOptions = with_shared(
     {kBins, {"share", "a box with more than this share of the node's area goes on a shelf", 0.5, 0, 1, false, true}});
+constexpr auto kSpatialOptions = with_shared(
+    {kBins,
+     {"spatial_bins", "slices of the node's box along each axis; the planes that cut lie between them", 16, 2, 64,
+      true},
+     {"overlap", "cuts are tried where halves overlap by more than this share of the root's area", 1e-5, 0, 1},
+     {"cap", "references for each one given, on average, that are never passed", 2, 1, 64}});
 constexpr auto kRandomOptions = with_shared({{"candidates", "planes tried at each node", 16, 1, 256, true}, kSeed});
 
 constexpr std::string_view kInsertionOrders[] = {"given", "shuffled"};
@@ -43,6 +50,9 @@ constexpr BuilderEntry kBuilders[] = {
     {"sweep_sah", "the cheapest of all planes by the surface area heuristic, sorted once",
      "Wald, Boulos, Shirley: Ray Tracing Deformable Scenes using Dynamic Bounding Volume Hierarchies, 2007",
      TopDownOptions::kSpecs, build_sweep_sah},
+    {"spatial_split", "binned_sah, but where halves would overlap large references may be cut",
+     "Stich, Friedrich, Dietrich: Spatial Splits in Bounding Volume Hierarchies, 2009", kSpatialOptions,
+     build_spatial_split},
     {"spatial_median", "the plane through the centre of the node's box, across its longest side",
      "Kay, Kajiya: Ray Tracing Complex Scenes, 1986", TopDownOptions::kSpecs, build_spatial_median},
     {"object_median", "equal counts along the axis where the centres spread most",

@@ -39,6 +39,7 @@ Bvh build_spatial_median(BuildInput input, const OptionValues& options);
 Bvh build_object_median(BuildInput input, const OptionValues& options);
 Bvh build_binned_sah(BuildInput input, const OptionValues& options);
 Bvh build_sweep_sah(BuildInput input, const OptionValues& options);
+Bvh build_spatial_split(BuildInput input, const OptionValues& options);
 Bvh build_insertion(BuildInput input, const OptionValues& options);
 Bvh build_random_top_down(BuildInput input, const OptionValues& options);
 Bvh build_oversize_shelves(BuildInput input, const OptionValues& options);

@@ -69,7 +69,6 @@ class ReferenceOrder {
     return halves;
   }
 
- private:
   static void add(Subset& subset, const Reference& reference) {
     subset.bounds.extend(reference.bounds());
     subset.centers.extend(reference.lower + reference.upper);

@@ -17,9 +17,11 @@ namespace kerf {
 struct Subset {
   uint32_t begin = 0, end = 0;
   Box3f bounds;
-  Box3f centers;  ///< of the references' lower + upper, twice their centres; a partition may leave it empty
+  Box3f centers;       ///< of the references' lower + upper, twice their centres; a partition may leave it empty
+  uint32_t spare = 0;  ///< free places from `end` on, for pieces of these references, where a builder cuts them
 
   uint32_t count() const { return end - begin; }
+  uint32_t room() const { return count() + spare; }
 };
 
 /// The two parts of a subset: [begin, middle) and [middle, end), neither empty.
@@ -75,17 +77,24 @@ inline void check_depth(size_t references, const TopDownOptions& options) {
                   " is allowed");
 }
 
+/// What a tree is built by: two halves of a subset at this depth, or nothing for a leaf. Their places lie within the
+/// subset's own, `room()` of them for each.
+template <class D>
+concept Divider = requires(D& d, const Subset& subset, uint32_t depth) {
+  { d.divide(subset, depth) } -> std::same_as<std::optional<Halves>>;
+};
+
 /// The recursion. Every subset has its own stretch of the node array, so that subtrees can be built at once and the
-/// result does not depend on which came first: the nodes below the root of [begin, end) take at most
-/// 2 (end - begin) - 2 places from `place` on, the root's two children the first two of them.
-template <Partition P>
-class TopDown {
+/// result does not depend on which came first: the nodes below the root of a subset take at most 2 room() - 2 places
+/// from `place` on, the root's two children the first two of them.
+template <Divider D>
+class Recursion {
  public:
-  TopDown(P& partition, const TopDownOptions& options, const WorkLimit& limit, std::vector<BvhNode>& nodes)
-      : partition_(partition), options_(options), limit_(limit), nodes_(nodes) {}
+  Recursion(D& divider, bool larger_first, const WorkLimit& limit, std::vector<BvhNode>& nodes)
+      : divider_(divider), larger_first_(larger_first), limit_(limit), nodes_(nodes) {}
 
   void build(const Subset& subset, uint32_t node, size_t place, uint32_t depth) {
-    const std::optional<Halves> halves = divide(subset, depth);
+    const std::optional<Halves> halves = divider_.divide(subset, depth);
     if (!halves) {
       nodes_[node] = {subset.bounds.lower, subset.begin, subset.bounds.upper, subset.count()};
       return;
@@ -93,10 +102,10 @@ class TopDown {
     const auto child = static_cast<uint32_t>(place);
     nodes_[node] = {subset.bounds.lower, child, subset.bounds.upper, 0};
     // A ray that begins in both boxes visits the first child first: best the one with more to hit.
-    const uint32_t left = options_.larger_first && halves->right.count() > halves->left.count() ? 1 : 0;
+    const uint32_t left = larger_first_ && halves->right.count() > halves->left.count() ? 1 : 0;
     const auto build_left = [&] { build(halves->left, child + left, place + 2, depth + 1); };
     const auto build_right = [&] {
-      build(halves->right, child + 1 - left, place + 2 * size_t{halves->left.count()}, depth + 1);
+      build(halves->right, child + 1 - left, place + 2 * size_t{halves->left.room()}, depth + 1);
     };
     if (subset.count() >= kParallelCount) {
       limit_.check();
@@ -110,6 +119,25 @@ class TopDown {
  private:
   static constexpr uint32_t kParallelCount = 2048;  // fewer references are not worth a task
 
+  D& divider_;
+  bool larger_first_;
+  const WorkLimit& limit_;
+  std::vector<BvhNode>& nodes_;
+};
+
+/// The surface area heuristic (Goldsmith and Salmon 1987; MacDonald and Booth 1990): is a leaf at most as dear as two
+/// halves whose areas times counts add up to `below`?
+inline bool leaf_is_cheaper(const Subset& subset, double below, const TopDownOptions& options) {
+  const double area = half_area(subset.bounds);
+  return options.primitive_cost * subset.count() * area <= options.inner_cost * area + options.primitive_cost * below;
+}
+
+/// A partition with the leaf decision and the depth bound.
+template <Partition P>
+class TopDown {
+ public:
+  TopDown(P& partition, const TopDownOptions& options) : partition_(partition), options_(options) {}
+
   /// The two halves, or nothing if the subset shall be a leaf.
   std::optional<Halves> divide(const Subset& subset, uint32_t depth) {
     const bool fits_leaf = subset.count() <= options_.leaf_size;
@@ -119,22 +147,16 @@ class TopDown {
     // Where no plane divides, or a lopsided one would break the depth bound further down: equal counts keep it.
     const uint64_t room = capacity(options_.leaf_size, options_.max_depth - depth - 1);
     if (!halves || halves->left.count() > room || halves->right.count() > room) halves = partition_.halve(subset);
-    return fits_leaf && leaf_is_cheaper(subset, *halves) ? std::nullopt : halves;
+    return fits_leaf && leaf_is_cheaper(subset, cost_of(*halves), options_) ? std::nullopt : halves;
   }
 
-  /// The surface area heuristic (Goldsmith and Salmon 1987; MacDonald and Booth 1990).
-  bool leaf_is_cheaper(const Subset& subset, const Halves& halves) const {
-    const double area = half_area(subset.bounds);
-    const double below =
-        half_area(halves.left.bounds) * halves.left.count() + half_area(halves.right.bounds) * halves.right.count();
-    return options_.primitive_cost * subset.count() * area <=
-           options_.inner_cost * area + options_.primitive_cost * below;
+ private:
+  static double cost_of(const Halves& halves) {
+    return half_area(halves.left.bounds) * halves.left.count() + half_area(halves.right.bounds) * halves.right.count();
   }
 
   P& partition_;
   const TopDownOptions& options_;
-  const WorkLimit& limit_;
-  std::vector<BvhNode>& nodes_;
 };
 
 /// The same tree without the unused places, nodes in depth-first order of pairs.
@@ -157,6 +179,18 @@ inline std::vector<BvhNode> compacted(const std::vector<BvhNode>& sparse) {
   return nodes;
 }
 
+/// The nodes of the tree over `whole`, not empty; each leaf's `first` is the place of its first reference. Throws
+/// Error(invalid_option) if the depth allowed cannot hold the references, Error(stopped) at the limit.
+template <Divider D>
+std::vector<BvhNode> build_nodes(D& divider, const Subset& whole, const TopDownOptions& options,
+                                 const WorkLimit& limit) {
+  check_depth(whole.count(), options);
+  limit.check(3 * size_t{whole.room()} * sizeof(BvhNode));
+  std::vector<BvhNode> sparse(2 * size_t{whole.room()} - 1);
+  Recursion<D>(divider, options.larger_first, limit, sparse).build(whole, 0, 1, 0);
+  return compacted(sparse);
+}
+
 }  // namespace detail
 
 /// Builds a tree from the root down: recursion, leaf decision, depth bound and threads for every partition.
@@ -165,13 +199,9 @@ template <Partition P>
 Bvh build_top_down(P& partition, const TopDownOptions& options, const WorkLimit& limit = {}) {
   const Subset whole = partition.whole();
   if (whole.count() == 0) return {};
-  detail::check_depth(whole.count(), options);
-  limit.check(3 * size_t{whole.count()} * sizeof(BvhNode));
-  std::vector<BvhNode> sparse(2 * size_t{whole.count()} - 1);
-  detail::TopDown<P>(partition, options, limit, sparse).build(whole, 0, 1, 0);
   Bvh bvh;
-  bvh.nodes = detail::compacted(sparse);
-  std::vector<BvhNode>().swap(sparse);
+  detail::TopDown<P> divider(partition, options);
+  bvh.nodes = detail::build_nodes(divider, whole, options, limit);
   bvh.slots.resize(whole.count());
   parallel_for(whole.count(), 65536, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {

@@ -1,0 +1,127 @@
+#include "kerf/build/binned_partition.h"
+#include "kerf/build/builders.h"
+#include "kerf/build/spatial_order.h"
+#include "kerf/references/split_each.h"
+
+namespace kerf {
+namespace {
+
+/// Of this builder, besides what all top-down builders share.
+struct SpatialSplitOptions {
+  uint32_t bins, spatial_bins;
+  double overlap;
+};
+
+/// Spatial splits where they are cheaper than object splits (Stich, Friedrich, Dietrich: Spatial Splits in Bounding
+/// Volume Hierarchies, 2009).
+class SpatialSplit {
+ public:
+  SpatialSplit(SpatialOrder& order, const Clipper& clipper, const SpatialSplitOptions& own,
+               const TopDownOptions& shared)
+      : order_(order),
+        clipper_(clipper),
+        own_(own),
+        shared_(shared),
+        least_overlap_(own.overlap * half_area(order.whole().bounds)) {}
+
+  std::optional<Halves> divide(const Subset& subset, uint32_t depth) {
+    if (subset.count() == 1 || depth == shared_.max_depth) return std::nullopt;
+    const uint64_t most = detail::capacity(shared_.leaf_size, shared_.max_depth - depth - 1);
+    const detail::Slices slices(subset.centers, own_.bins);
+    detail::Bins bins;
+    detail::fill_parallel(order_.references(subset), slices, bins);
+    const detail::Plane object = detail::cheapest_plane(bins, slices);
+    const SpatialPlane spatial = overlap(bins, slices, object, subset) > least_overlap_
+                                     ? find_spatial(subset, object.cost, most)
+                                     : SpatialPlane{};
+    const double cost = spatial.is_found() ? spatial.cost : object.cost;
+    if (subset.count() <= shared_.leaf_size && (std::isinf(cost) || detail::leaf_is_cheaper(subset, cost, shared_))) {
+      return std::nullopt;
+    }
+    Halves halves =
+        spatial.is_found() ? order_.cut(subset, spatial, clipper_) : divide_whole(subset, slices, object, most);
+    order_.make_room(subset, halves);
+    return halves;
+  }
+
+ private:
+  /// Half the area of what the boxes on both sides of an object split have in common; without one, of the whole.
+  static double overlap(const detail::Bins& bins, const detail::Slices& slices, const detail::Plane& plane,
+                        const Subset& subset) {
+    if (std::isinf(plane.cost)) return half_area(subset.bounds);
+    detail::Bin left, right;
+    left.clear();
+    right.clear();
+    for (uint32_t i = 0; i < slices.bins; ++i) (i < plane.bin ? left : right).add(bins[plane.axis][i]);
+    return half_area(intersected(left.box(), right.box()));
+  }
+
+  /// A plane that is cheaper than the best object split, and than a leaf.
+  SpatialPlane find_spatial(const Subset& subset, double object_cost, uint64_t most) const {
+    if (subset.spare == 0) return {};
+    double cost = object_cost;
+    if (subset.count() <= shared_.leaf_size) {
+      const double leaf = subset.count() - shared_.inner_cost / shared_.primitive_cost;
+      cost = std::min(cost, leaf * half_area(subset.bounds));
+    }
+    const SpatialSlices slices(subset.bounds, own_.spatial_bins);
+    return cheapest_spatial_plane(order_.references(subset), slices, clipper_, {subset.room(), most, cost});
+  }
+
+  Halves divide_whole(const Subset& subset, const detail::Slices& slices, const detail::Plane& plane, uint64_t most) {
+    // Where no plane divides, or a lopsided one would break the depth bound further down: equal counts keep it.
+    if (std::isinf(plane.cost)) return order_.halve(subset);
+    const Halves halves =
+        order_.partition(subset, [&](const Reference& r) { return slices(r, plane.axis) < plane.bin; });
+    return std::max(halves.left.count(), halves.right.count()) <= most ? halves : order_.halve(subset);
+  }
+
+  SpatialOrder& order_;
+  const Clipper& clipper_;
+  SpatialSplitOptions own_;
+  const TopDownOptions& shared_;
+  double least_overlap_;
+};
+
+/// The leaves' slots side by side. A primitive whose pieces ended in one leaf gets one slot there.
+void gather_slots(Bvh& bvh, const SpatialOrder& order) {
+  std::vector<LeafSlot> leaf;
+  for (BvhNode& node : bvh.nodes) {
+    if (!node.is_leaf()) continue;
+    leaf.clear();
+    for (uint32_t i = node.first; i < node.first + node.count; ++i) {
+      leaf.push_back({order.reference(i).geometry, order.reference(i).primitive});
+    }
+    std::sort(leaf.begin(), leaf.end(), [](const LeafSlot& a, const LeafSlot& b) {
+      return std::make_pair(a.geometry_bits, a.primitive) < std::make_pair(b.geometry_bits, b.primitive);
+    });
+    leaf.erase(std::unique(leaf.begin(), leaf.end()), leaf.end());
+    node.first = static_cast<uint32_t>(bvh.slots.size());
+    node.count = static_cast<uint32_t>(leaf.size());
+    bvh.slots.insert(bvh.slots.end(), leaf.begin(), leaf.end());
+  }
+  bvh.slots.shrink_to_fit();
+}
+
+}  // namespace
+
+Bvh build_spatial_split(BuildInput input, const OptionValues& options) {
+  const TopDownOptions shared = TopDownOptions::from(options);
+  const auto bins = static_cast<uint32_t>(options["bins"]);
+  if (input.clipper.function == nullptr) {
+    BinnedSah partition(std::move(input.references), bins);
+    return build_top_down(partition, shared, input.limit);
+  }
+  if (input.references.empty()) return {};
+  const size_t room = most_references(input.references.size(), options["cap"]);
+  input.limit.check(room * (sizeof(Reference) + 3 * sizeof(BvhNode)));
+  SpatialOrder order(std::move(input.references), room);
+  SpatialSplit divider(order, input.clipper, {bins, static_cast<uint32_t>(options["spatial_bins"]), options["overlap"]},
+                       shared);
+  Bvh bvh;
+  bvh.nodes = detail::build_nodes(divider, order.whole(), shared, input.limit);
+  gather_slots(bvh, order);
+  return bvh;
+}
+
+}  // namespace kerf
