@@ -12,8 +12,9 @@ struct SpatialSplitOptions {
   double overlap, favour;
 };
 
-/// Spatial splits where they are cheaper than object splits (Stich, Friedrich, Dietrich: Spatial Splits in Bounding
-/// Volume Hierarchies, 2009).
+/// At each node the cheaper of the best division of whole references and the best plane to cut at (Stich, Friedrich,
+/// Dietrich: Spatial Splits in Bounding Volume Hierarchies, 2009). Not of the paper: the room that each node has for
+/// pieces, and that cuts are favoured.
 class SpatialSplit {
  public:
   SpatialSplit(SpatialOrder& order, const Clipper& clipper, const SpatialSplitOptions& own,
@@ -105,6 +106,16 @@ void gather_slots(Bvh& bvh, const SpatialOrder& order) {
   bvh.slots.shrink_to_fit();
 }
 
+/// Cutting may leave less of a reference's box than there was.
+void shrink_to_children(std::vector<BvhNode>& nodes) {
+  for (size_t i = nodes.size(); i-- > 0;) {
+    if (nodes[i].is_leaf()) continue;
+    const Box3f box = united(nodes[nodes[i].first].bounds(), nodes[nodes[i].first + 1].bounds());
+    nodes[i].lower = box.lower;
+    nodes[i].upper = box.upper;
+  }
+}
+
 }  // namespace
 
 Bvh build_spatial_split(BuildInput input, const OptionValues& options) {
@@ -123,6 +134,7 @@ Bvh build_spatial_split(BuildInput input, const OptionValues& options) {
                        shared);
   Bvh bvh;
   bvh.nodes = detail::build_nodes(divider, order.whole(), shared, input.limit);
+  shrink_to_children(bvh.nodes);
   gather_slots(bvh, order);
   return bvh;
 }
