@@ -82,7 +82,8 @@ FAULTS = [
     Fault("leaves too large", "kerf/build/top_down.h",
           "subset.count() <= options_.leaf_size;", "subset.count() <= 2 * options_.leaf_size;", "build_test"),
     Fault("the leaf decision upside down", "kerf/build/top_down.h",
-          "fits_leaf && leaf_is_cheaper(subset, *halves)", "fits_leaf && !leaf_is_cheaper(subset, *halves)", "build_test"),
+          "fits_leaf && leaf_is_cheaper(subset, cost_of(*halves), options_)",
+          "fits_leaf && !leaf_is_cheaper(subset, cost_of(*halves), options_)", "build_test"),
     Fault("the right side's area forgotten in the sweep", "kerf/build/sweep_sah.cpp",
           " + line.right_area[i] * (subset.end - i);", ";", "build_test"),
     Fault("the sweep's other orders not partitioned", "kerf/build/sweep_sah.cpp",
@@ -120,6 +121,13 @@ FAULTS = [
           "early_split_test nasty_test"),
     Fault("a PFM upside down", "kerf/io/image_write.cpp",
           "for (size_t y = image.height; y-- > 0;) {", "for (size_t y = 0; y < image.height; ++y) {", "image_test"),
+    # Automatic splitting.
+    Fault("a cut corner missing above the plane", "kerf/geometry/clip.cpp",
+          "        above.add(cut);\n", "", "clip_test"),
+    Fault("the guide loses what is above its planes", "kerf/choose/split_guide.cpp",
+          "if (!parts.above.is_empty()) above.push_back(piece(guided, parts.above));", "", "automatic_split_test"),
+    Fault("the cap of automatic splitting passed", "kerf/choose/automatic_split.cpp",
+          "if (count > most_) return std::nullopt;", "if (count > 2 * most_) return std::nullopt;", "automatic_split_test"),
     # The renderer.
     Fault("weight of multiple importance sampling 1 for lights", "kerf/render/path_tracer.cpp",
           "power_heuristic(light.density, bsdf.density(light.direction)) / light.density", "1 / light.density",
