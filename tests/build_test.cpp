@@ -11,6 +11,7 @@
 #include "kerf/build/builders.h"
 #include "kerf/references/early_split.h"
 #include "tests/support/random_scene.h"
+#include "tests/support/sizes.h"
 
 namespace kerf {
 namespace {
@@ -95,7 +96,7 @@ TEST_P(EveryBuilder, KeepsTheDepthBoundWhereEveryPlaneIsLopsided) {
 }
 
 TEST_P(EveryBuilder, SameTreeForAnyNumberOfThreads) {
-  const RandomTriangles scene(40000);
+  const RandomTriangles scene(2 * test::kManyThings);
   const Geometry geometry = scene.geometry();
   const auto hash_with = [&](int threads) {
     uint64_t hash = 0;

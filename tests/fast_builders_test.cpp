@@ -22,6 +22,7 @@
 #include "tests/support/property.h"
 #include "tests/support/random.h"
 #include "tests/support/random_scene.h"
+#include "tests/support/sizes.h"
 
 namespace kerf::test {
 namespace {
@@ -401,7 +402,7 @@ TEST(FastBuilders, TheOrderOfTheReferencesDoesNotMatter) {
 }
 
 TEST(FastBuilders, AreTheSameToTheByteForAnyNumberOfThreads) {
-  const RandomTriangles scene(30000);
+  const RandomTriangles scene(kManyThings * 3 / 2);
   const Geometry geometry = scene.geometry();
   const std::vector<Reference> references = make_references({&geometry, 1}).references;
   const auto bytes = [&](const char* name, double radius, int threads) {

@@ -268,7 +268,7 @@ TEST(Nasty, EqualDistancesGoToTheSmallestNumber) {
 
 TEST(Nasty, MixedScenesAgreeToTheBit) {
   size_t hits = 0;
-  check_property(300, [&] {
+  check_property(kManyDraws, [&] {
     Things things;
     // On a coarse grid every second time: many equal boxes, shared planes, ties and shapes without area.
     const bool grid = draw_int(0, 1) == 0;
@@ -292,7 +292,7 @@ TEST(Nasty, MixedScenesAgreeToTheBit) {
     RC_ASSERT(outcome.difference == "");
     hits += outcome.hits;
   });
-  EXPECT_GT(hits, 1000U);
+  EXPECT_GT(hits, 3 * kManyDraws);
 }
 
 TEST(Nasty, SplittingReallySplits) {
