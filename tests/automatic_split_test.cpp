@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -184,6 +185,29 @@ TEST(AutomaticSplit, StopsAtTheLimit) {
   error_of(ErrorCode::stopped, [&] {
     split_automatically({geometries, whole.references, geometry_clipper(geometries), small});
   });
+}
+
+TEST(AutomaticSplit, CanBeStoppedWhereNothingDividesThem) {
+  Soup soup;
+  for (int i = 0; i < 200000; ++i) soup.add({0, 0, 0}, {1, 2, 3}, {3, 1, 1});
+  const Geometry geometry{soup.mesh()};
+  const std::span<const Geometry> geometries(&geometry, 1);
+  const PrimitiveReferences whole = make_references(geometries);
+  // Cuts say when they are wanted no more; the guide itself ends at once.
+  static std::atomic<bool> cancelled = false;
+  static std::atomic<int> cuts = 0;
+  cancelled = false;
+  cuts = 0;
+  const Clipper clipper{[](const void* data, const Reference& reference, uint32_t axis, float position) {
+                          cancelled = ++cuts > 10;
+                          return geometry_clipper(*static_cast<const std::span<const Geometry>*>(data))(reference, axis,
+                                                                                                        position);
+                        },
+                        &geometries};
+  WorkLimit limit;
+  limit.cancelled = &cancelled;
+  error_of(ErrorCode::stopped, [&] { split_automatically({geometries, whole.references, clipper, limit}, {16}); });
+  EXPECT_LT(cuts, 100000) << "stopped long before the end";
 }
 
 TEST(AutomaticSplit, DoesNotDependOnThreads) {

@@ -93,6 +93,14 @@ TEST(SpatialSplit, TheCapIsHonouredAndUsed) {
   }
 }
 
+TEST(SpatialSplit, TakesAsManySlicesAsItHasRoomFor) {
+  const Input input(3000, 0.5F);
+  for (const double slices : {2.0, 3.0, double{SpatialSlices::kMost}}) {
+    EXPECT_GT(input.build({{"spatial_bins", slices}}).slots.size(), 3000U) << slices;
+  }
+  EXPECT_THROW(options_of({{"spatial_bins", SpatialSlices::kMost + 1}}), Error);
+}
+
 TEST(SpatialSplit, NeedlesGain) {
   // Diagonal needles among small triangles; and needles only, where no single cut is cheaper than none, but many are.
   const std::map<float, double> bars{{0.5F, 0.65}, {1.0F, 0.8}};

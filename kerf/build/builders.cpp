@@ -28,8 +28,8 @@ constexpr auto kShelvesOptions = with_shared(
     {kBins, {"share", "a box with more than this share of the node's area goes on a shelf", 0.5, 0, 1, false, true}});
 constexpr auto kSpatialOptions = with_shared(
     {kBins,
-     {"spatial_bins", "slices of the node's box along each axis; the planes that cut lie between them", 16, 2, 64,
-      true},
+     {"spatial_bins", "slices of the node's box along each axis; the planes that cut lie between them", 16, 2,
+      SpatialSlices::kMost, true},
      {"overlap", "cuts are tried where halves overlap by more than this share of the root's area", 1e-5, 0, 1},
      {"favour", "times the cost of the best division without cuts that one with cuts may cost", 1.1, 0.5, 2},
      {"cap", "references for each one given, on average, that are never passed", 2, 1, 64}});

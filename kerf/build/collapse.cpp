@@ -18,8 +18,9 @@ void both(uint32_t depth, F&& f, G&& g) {
 
 }  // namespace
 
-Collapse::Collapse(const MovableTree& tree, const LeafRule& rule)
-    : tree_(tree), rule_(rule), summaries_(tree.end()), cost_(choose(MovableTree::kRoot, 0)) {}
+Collapse::Collapse(const MovableTree& tree, const LeafRule& rule) : tree_(tree), rule_(rule), summaries_(tree.end()) {
+  choose(MovableTree::kRoot, 0);
+}
 
 /// The least cost of the subtree.
 double Collapse::choose(uint32_t n, uint32_t depth) {

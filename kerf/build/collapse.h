@@ -18,8 +18,6 @@ class Collapse {
  public:
   Collapse(const MovableTree& tree, const LeafRule& rule);
 
-  /// The sum over the nodes of half area times cost.
-  double cost() const { return cost_; }
   /// The tree with its leaves' slots, which were `slots` in the tree at first. Of two children the first has more of
   /// them.
   Bvh bvh(const std::vector<LeafSlot>& slots) const;
@@ -42,7 +40,6 @@ class Collapse {
   const MovableTree& tree_;
   LeafRule rule_;
   std::vector<Summary> summaries_;
-  double cost_ = 0;
 };
 
 }  // namespace kerf

@@ -146,7 +146,8 @@ bool make_moves(MovableTree& tree, const std::vector<Move>& moves, const WorkLim
 Bvh optimise_reinsertion(Bvh bvh, const OptionValues& options, const WorkLimit& limit) {
   if (bvh.nodes.empty()) return bvh;
   // The tree to work on, the moves, the tree to return.
-  limit.check(bvh.nodes.size() * (sizeof(MovableTree::Node) + sizeof(Move) + sizeof(BvhNode)) + bvh.bytes());
+  constexpr size_t kPerNode = sizeof(MovableTree::Node) + 2 * sizeof(Move) + sizeof(BvhNode) + 8;
+  limit.check(bvh.nodes.size() * kPerNode + bvh.bytes());
   MovableTree tree(bvh);
   std::vector<BvhNode>().swap(bvh.nodes);
   const auto iterations = static_cast<uint32_t>(options["iterations"]);

@@ -116,7 +116,7 @@ Halves SpatialOrder::cut(const Subset& subset, const SpatialPlane& plane, const 
   const Pieces pieces = cut_all(across, plane, clipper);
   const auto below_more = static_cast<uint32_t>(pieces.below.size());
   const auto above_more = static_cast<uint32_t>(pieces.above.size());
-  std::copy_backward(begin + below_end, begin + across_begin, begin + across_begin + below_more);
+  if (below_more > 0) std::copy_backward(begin + below_end, begin + across_begin, begin + across_begin + below_more);
   std::copy(pieces.below.begin(), pieces.below.end(), begin + below_end);
   std::copy(pieces.above.begin(), pieces.above.end(), begin + across_begin + below_more);
   const uint32_t middle = below_end + below_more, end = across_begin + below_more + above_more;
@@ -140,7 +140,9 @@ void SpatialOrder::make_room(const Subset& subset, Halves& halves) {
   halves.left.spare = std::min(static_cast<uint32_t>(share * spare), spare);
   halves.right.spare = spare - halves.left.spare;
   const auto from = references_.begin();
-  std::copy_backward(from + halves.right.begin, from + halves.right.end, from + halves.right.end + halves.left.spare);
+  if (halves.left.spare > 0) {
+    std::copy_backward(from + halves.right.begin, from + halves.right.end, from + halves.right.end + halves.left.spare);
+  }
   halves.right.begin += halves.left.spare;
   halves.right.end += halves.left.spare;
 }

@@ -69,7 +69,7 @@ Areas measure(std::span<const Reference> references) {
   return areas;
 }
 
-/// The references that the guide is for: the larger half, which may be cut, and a sample of all, which judges.
+/// The references that the guide is for, all of which may be cut: the larger half, and a sample of all, which judges.
 std::vector<GuidedReference> to_guide(std::span<const Reference> whole, const Areas& areas) {
   const size_t rate = std::clamp<size_t>(whole.size() / kSamples, 1, kSampleShare);
   const float large = areas.passed_by(rate), candidate = areas.passed_by(kCandidateShare);
@@ -168,6 +168,7 @@ class Attempts {
 
   /// The most pieces found that fit, when at(1) are too many; nothing if none do.
   std::optional<GuidedPieces> fitting() {
+    if (most_ <= input_.whole.size()) return std::nullopt;
     double too_many = 1, fits = 1;  // of strictness
     std::optional<GuidedPieces> best;
     while (!best && fits < kStrictest) best = at(fits *= 2);
@@ -199,7 +200,9 @@ SplitResult split_automatically(const SplitInput& input, const AutomaticSplit& o
   }
   const std::span<const Reference> whole = input.whole;
   SplitResult result{{whole.begin(), whole.end()}, std::numeric_limits<double>::quiet_NaN(), false, SplitChoice{}};
-  input.limit.check(whole.size() * (sizeof(GuidedReference) + 2 * sizeof(Reference)));
+  // At the peak: the references for the guide, the pieces of two attempts, and the outcome.
+  input.limit.check(whole.size() * (sizeof(GuidedReference) + 2 * sizeof(Reference)) +
+                    most_references(whole.size(), options.cap) * sizeof(GuidedReference));
   const Areas areas = measure(whole);
   if (whole.empty() || !(areas.whole > 0)) {
     result.choice->curve = {{1, 0}};

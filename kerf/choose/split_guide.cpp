@@ -14,6 +14,7 @@ constexpr double kCellWeight = 64;    // references that a cell stands for, abou
 constexpr size_t kCellWeighty = 8;    // fewer say little about where to cut
 constexpr uint32_t kMostLevels = 48;  // of the guide
 constexpr size_t kParallel = 2048;    // references that are worth a task
+constexpr size_t kStepsPerCheck = 1024;
 /// Planes through references are tried where the children of the best plane between them overlap by this share of the
 /// node's area.
 constexpr double kLeastOverlap = 0.01;
@@ -35,7 +36,7 @@ class Guide {
       return cell(std::move(references), node);
     }
     std::vector<GuidedReference> below, above;
-    const size_t cuts = part(references, node, room, below, above);
+    part(references, node, room, below, above);
     if (below.empty() || above.empty()) return cell(std::move(references), node);
     const bool is_large = references.size() >= kParallel;
     const size_t below_room = share_of(room, below.size(), above.size());
@@ -51,7 +52,6 @@ class Guide {
     }
     first.cells.insert(first.cells.end(), std::make_move_iterator(second.cells.begin()),
                        std::make_move_iterator(second.cells.end()));
-    first.guided_cuts += second.guided_cuts + cuts;
     first.curve.add(second.curve);
     return first;
   }
@@ -62,9 +62,9 @@ class Guide {
     return std::clamp(static_cast<size_t>(share * static_cast<double>(room)), below, room - above);
   }
 
-  /// Divides a node's references at the better plane; returns how many it cut.
-  size_t part(std::span<const GuidedReference> references, const GuideNode& node, size_t room,
-              std::vector<GuidedReference>& below, std::vector<GuidedReference>& above) const {
+  /// Divides a node's references at the better plane; one side stays empty where none divides them.
+  void part(std::span<const GuidedReference> references, const GuideNode& node, size_t room,
+            std::vector<GuidedReference>& below, std::vector<GuidedReference>& above) const {
     const GuidePlane divider = cheapest_dividing_plane(references, node);
     if (is_worth_cutting(divider, node)) {
       const GuidePlane cutter = cheapest_cutting_plane(references, node, geometries_);
@@ -72,8 +72,9 @@ class Guide {
       const double toll = rules_.plane_gain * half_area(node.bounds) * added;
       const double otherwise = divider.exists() ? divider.cost : half_area(node.bounds) * node.weight;
       if (cutter.cost + toll < otherwise) {
-        const size_t cuts = cut(references, cutter, below, above);
-        if (below.size() + above.size() <= room) return cuts;
+        cut(references, node, cutter, below, above);
+        // Kept whole, all may have gone to one side.
+        if (!below.empty() && !above.empty() && below.size() + above.size() <= room) return;
         below.clear();
         above.clear();
       }
@@ -83,7 +84,6 @@ class Guide {
         (divider.is_below(guided.reference) ? below : above).push_back(guided);
       }
     }
-    return 0;
   }
 
   static bool is_worth_cutting(const GuidePlane& divider, const GuideNode& node) {
@@ -93,10 +93,11 @@ class Guide {
 
   /// References across the plane go to both sides, or whole to one where that is cheaper (Stich et al. 2009, section
   /// 4.4, with the sides as they were judged).
-  size_t cut(std::span<const GuidedReference> references, const GuidePlane& plane, std::vector<GuidedReference>& below,
-             std::vector<GuidedReference>& above) const {
+  void cut(std::span<const GuidedReference> references, const GuideNode& node, const GuidePlane& plane,
+           std::vector<GuidedReference>& below, std::vector<GuidedReference>& above) const {
     const double below_area = half_area(plane.below), above_area = half_area(plane.above);
-    size_t cuts = 0;
+    const double both = below_area * plane.below_weight + above_area * plane.above_weight;
+    const double toll = rules_.plane_gain * half_area(node.bounds);  // of one more reference
     for (const GuidedReference& guided : references) {
       const Reference& reference = guided.reference;
       const bool reaches_below = reference.lower[plane.axis] < plane.position;
@@ -106,12 +107,11 @@ class Guide {
         continue;
       }
       const double weight = std::max(1.0F, guided.weight);
-      const double both = below_area * plane.below_weight + above_area * plane.above_weight;
       const double only_below = half_area(united(plane.below, reference.bounds())) * plane.below_weight +
                                 above_area * (plane.above_weight - weight);
       const double only_above = below_area * (plane.below_weight - weight) +
                                 half_area(united(plane.above, reference.bounds())) * plane.above_weight;
-      if (std::min(only_below, only_above) <= both) {
+      if (std::min(only_below, only_above) <= both + toll * weight) {
         (only_below <= only_above ? below : above).push_back(guided);
         continue;
       }
@@ -120,9 +120,7 @@ class Guide {
       if (is_lost) below.push_back(guided);
       if (!parts.below.is_empty()) below.push_back(piece(guided, parts.below));
       if (!parts.above.is_empty()) above.push_back(piece(guided, parts.above));
-      cuts += !parts.below.is_empty() && !parts.above.is_empty() ? 1 : 0;
     }
-    return cuts;
   }
 
   static GuidedReference piece(GuidedReference guided, const Box3f& box) {
@@ -157,9 +155,11 @@ class Guide {
     const double unit = std::min(cell_unit * rules_.cell_gain, rules_.scene_unit * rules_.scene_gain);
     std::vector<GuidedReference> cut, stack;
     cut.reserve(references.size());
+    size_t steps = 0;
     for (const GuidedReference& whole : references) {
       stack.assign(1, whole);
       while (!stack.empty()) {
+        if (++steps % kStepsPerCheck == 0) limit_.check();
         GuidedReference guided = stack.back();
         stack.pop_back();
         const double before = half_area(guided.reference.bounds());

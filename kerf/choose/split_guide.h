@@ -47,8 +47,7 @@ struct GuideRules {
 /// What came of it.
 struct GuidedPieces {
   std::vector<std::vector<GuidedReference>> cells;
-  size_t guided_cuts = 0;  ///< by the guide's planes; the others are in the curve
-  GainCurve curve;
+  GainCurve curve;  ///< of the cuts in cells
 };
 
 /// Cuts large references where a coarse tree over them would: from the top down each node takes the cheapest of some
