@@ -15,8 +15,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A surface area limit: JSON has no number for infinity, nor for one that was chosen for each part of the scene.
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(std::isnan(x) ? "auto" : "inf"); }
+Json choice_json(const std::optional<SplitChoice>& choice) {
+  if (!choice) return {};
+  Json curve = Json::array();
+  for (const SplitChoice::Step& step : choice->curve) {
+    curve.push_back({{"references_per_primitive", step.references_per_primitive}, {"cost", step.cost}});
+  }
+  return {{"reason", choice->reason}, {"curve", curve}};
+}
 
 /// "X,Y,Z". One word, not three as CLI11 would have it: that takes what stands behind it too.
 Vec3d parse_vector(const char* option, const std::string& text) {
@@ -142,18 +148,7 @@ RenderScene build_input(const SceneArguments& arguments, SceneInput& input) {
   }
 }
 
-namespace {
-
-Json choice_json(const std::optional<SplitChoice>& choice) {
-  if (!choice) return {};
-  Json curve = Json::array();
-  for (const SplitChoice::Step& step : choice->curve) {
-    curve.push_back({{"references_per_primitive", step.references_per_primitive}, {"cost", step.cost}});
-  }
-  return {{"reason", choice->reason}, {"curve", curve}};
-}
-
-}  // namespace
+Json limit_json(double x) { return std::isfinite(x) ? Json(x) : Json(std::isnan(x) ? "auto" : "inf"); }
 
 Json report_json(const BuildReport& r) {
   return {{"structure", r.structure},
@@ -162,7 +157,7 @@ Json report_json(const BuildReport& r) {
           {"degenerate", r.degenerate},
           {"references", r.references},
           {"references_per_primitive", r.references_per_primitive},
-          {"sa_max", number(r.sa_max)},
+          {"sa_max", limit_json(r.sa_max)},
           {"capped", r.capped},
           {"split_choice", choice_json(r.choice)},
           {"bytes", r.bytes},

@@ -43,6 +43,9 @@ RenderScene build_input(const SceneArguments& arguments, SceneInput& input);
 
 nlohmann::ordered_json report_json(const BuildReport& report);
 
+/// A surface area limit: JSON has no number for infinity, nor for one that was chosen for each part of the scene.
+nlohmann::ordered_json limit_json(double sa_max);
+
 /// Says on standard error what the build changed.
 void print_build_notes(const BuildReport& report);
 

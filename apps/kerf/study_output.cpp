@@ -3,11 +3,11 @@
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 
-#include <cmath>
 #include <ctime>
 #include <fstream>
 #include <thread>
 
+#include "apps/kerf/scene_input.h"
 #include "kerf/base/version.h"
 #include "kerf/io/output_file.h"
 
@@ -15,9 +15,6 @@ namespace kerf::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// JSON has no infinity: it is the text "inf".
-Json number(double x) { return std::isfinite(x) ? Json(x) : Json(fmt::format("{}", x)); }
 
 Json spread_json(const Spread& spread) {
   return {{"least", spread.least}, {"most", spread.most}, {"count", spread.count}};
@@ -50,7 +47,7 @@ Json study_json(std::span<const StudyResult> results) {
       continue;
     }
     one.update({{"references_per_triangle", r.references_per_triangle},
-                {"sa_max", std::isnan(r.sa_max) ? Json("auto") : number(r.sa_max)},
+                {"sa_max", limit_json(r.sa_max)},
                 {"build_seconds", r.build_seconds.median},
                 {"build_seconds_spread", spread_json(r.build_seconds)},
                 {"nodes_per_ray", r.nodes_per_ray},

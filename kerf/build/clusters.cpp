@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "kerf/base/parallel.h"
+#include "kerf/references/box_around.h"
 
 namespace kerf {
 namespace {
@@ -16,13 +17,7 @@ struct UnitBox {
   double scale = 0;
 
   explicit UnitBox(std::span<const Reference> references) {
-    std::vector<Box3f> blocks((references.size() + kGrain - 1) / kGrain);
-    parallel_for(references.size(), kGrain, [&](size_t begin, size_t end) {
-      Box3f& box = blocks[begin / kGrain];
-      for (size_t i = begin; i < end; ++i) box.extend(references[i].bounds());
-    });
-    Box3f all;
-    for (const Box3f& block : blocks) all.extend(block);
+    const Box3f all = box_around(references);
     first = to_double(all.lower);
     const double longest = largest(to_double(all.upper) - first);
     if (longest > 0) scale = 1 / longest;

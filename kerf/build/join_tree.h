@@ -29,6 +29,9 @@ struct JoinTree {
   uint32_t part(size_t join) const { return static_cast<uint32_t>(references.size() + join); }
 };
 
+/// What a builder that ends in make_bvh() takes for each reference at its peak, when the Bvh is written.
+inline constexpr size_t kJoinTreeBytes = sizeof(Reference) + sizeof(Join) + 2 * sizeof(BvhNode) + sizeof(LeafSlot);
+
 /// The Bvh of a tree. From the bottom up, a join that the surface area heuristic finds cheaper as a leaf becomes one.
 /// The depth bound is that of build_top_down(): a join with a part that would not fit in the levels that are left is
 /// made anew of halves of equal counts, its references in the order they had. Takes, beside the tree, what the Bvh

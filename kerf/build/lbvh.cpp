@@ -9,9 +9,6 @@
 namespace kerf {
 namespace {
 
-// At the peak, when the Bvh is written: references, joins, nodes, slots; codes and their sort took less before.
-constexpr size_t kBytesPerReference = sizeof(Reference) + sizeof(Join) + 2 * sizeof(BvhNode) + sizeof(LeafSlot);
-
 /// Cuts references along the curve where the highest bit in which their codes differ changes (Lauterbach et al. 2009).
 /// The join of a cut has the number of the first reference behind it, less one, so that all can be made at once in one
 /// array (the idea: Karras 2012).
@@ -64,7 +61,7 @@ Bvh build_lbvh(BuildInput input, const OptionValues& options) {
   const auto count = static_cast<uint32_t>(input.references.size());
   if (count == 0) return {};
   detail::check_depth(count, shared);
-  input.limit.check(count * kBytesPerReference);
+  input.limit.check(count * kJoinTreeBytes);  // codes and their sort took less before
   JoinTree tree;
   {
     MortonOrder order = morton_order(std::move(input.references), input.limit);

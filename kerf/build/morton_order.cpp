@@ -5,6 +5,7 @@
 
 #include "kerf/base/parallel.h"
 #include "kerf/base/radix_sort.h"
+#include "kerf/references/box_around.h"
 
 namespace kerf {
 namespace {
@@ -13,14 +14,7 @@ constexpr size_t kGrain = 16384;
 
 /// The box around all lower + upper, twice the centres.
 Box3f bounds_of_centers(const std::vector<Reference>& references) {
-  std::vector<Box3f> blocks((references.size() + kGrain - 1) / kGrain);
-  parallel_for(references.size(), kGrain, [&](size_t begin, size_t end) {
-    Box3f& box = blocks[begin / kGrain];
-    for (size_t i = begin; i < end; ++i) box.extend(references[i].lower + references[i].upper);
-  });
-  Box3f all;
-  for (const Box3f& block : blocks) all.extend(block);
-  return all;
+  return box_around(references, [](Box3f& box, const Reference& r) { box.extend(r.lower + r.upper); });
 }
 
 /// The 21 low bits, each followed by two zeros.

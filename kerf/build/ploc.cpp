@@ -9,9 +9,6 @@
 namespace kerf {
 namespace {
 
-/// At the peak, when the Bvh is written: references, joins, nodes, slots. Clusters took less before.
-constexpr size_t kBytesPerReference = sizeof(Reference) + sizeof(Join) + 2 * sizeof(BvhNode) + sizeof(LeafSlot);
-
 /// Joins clusters that are each other's nearest, all such pairs at once, until one is left (Meister and Bittner 2018).
 /// A joined one takes the place of the lower of the two, so that clusters stay near the curve.
 class Joining {
@@ -117,7 +114,7 @@ Bvh build_ploc(BuildInput input, const OptionValues& options) {
   const size_t count = input.references.size();
   if (count == 0) return {};
   detail::check_depth(count, shared);
-  input.limit.check(count * kBytesPerReference);
+  input.limit.check(count * kJoinTreeBytes);  // clusters took less before
   JoinTree tree;
   tree.references = morton_order(std::move(input.references), input.limit).references;
   tree.joins.resize(count - 1);

@@ -11,6 +11,7 @@
 #include "kerf/base/error.h"
 #include "kerf/base/parallel.h"
 #include "kerf/choose/split_guide.h"
+#include "kerf/references/box_around.h"
 #include "kerf/references/fit_limit.h"
 #include "kerf/references/split_each.h"
 
@@ -50,13 +51,7 @@ Areas measure(std::span<const Reference> references) {
   Areas areas;
   areas.of.resize(references.size());
   const size_t blocks = (references.size() + kGrain - 1) / kGrain;
-  std::vector<Box3f> boxes(blocks);
-  parallel_for(references.size(), kGrain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) boxes[begin / kGrain].extend(references[i].bounds());
-  });
-  Box3f box;
-  for (const Box3f& part : boxes) box.extend(part);
-  areas.whole = half_area(box);
+  areas.whole = half_area(box_around(references));
   std::vector<double> sums(blocks);
   parallel_for(references.size(), kGrain, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {

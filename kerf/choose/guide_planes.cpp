@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "kerf/build/reference_order.h"
 #include "kerf/choose/slab_bounds.h"
 
 namespace kerf {
@@ -14,8 +15,6 @@ static_assert(kBins <= kMostSlabs);
 // Planes across a side shorter than this share of the longest are not tried: they leave two long parts, and trees are
 // as good without them.
 constexpr float kLeastLength = 0.5F;
-
-float center2(const Reference& reference, uint32_t axis) { return reference.lower[axis] + reference.upper[axis]; }
 
 uint32_t bin_of(float center, float first, float scale) {
   return static_cast<uint32_t>(std::clamp((center - first) * scale, 0.0F, static_cast<float>(kBins - 1)));

@@ -17,9 +17,9 @@ namespace kerf {
 
 /// How Scene::build() works.
 struct BuildOptions {
-  /// The pipeline: perhaps a splitter, then a builder, perhaps optimisers and perhaps a layout, or a structure, joined
-  /// by
-  /// '+', options in parentheses; see menu().
+  /// The pipeline: perhaps a splitter, then a builder,
+  /// perhaps optimisers and perhaps a layout, or a structure,
+  /// joined by '+', options in parentheses; see menu().
   std::string structure = "binned_sah";
   int threads = 0;            ///< 0: as many as the caller's arena has
   bool skip_invalid = false;  ///< drop primitives that are not finite or have a bad index, instead of an error
