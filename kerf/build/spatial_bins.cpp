@@ -18,7 +18,7 @@ using PerSlice = std::array<T, SpatialSlices::kMost>;
 
 /// What is known of a slice without cutting: how many references have it as their first or last, and their boxes.
 struct Tally {
-  uint32_t first_count = 0, last_count = 0;
+  double first_count = 0, last_count = 0;
   Box3f first, last;
 
   void add(const Tally& other) {
@@ -29,16 +29,18 @@ struct Tally {
   }
 };
 
-/// fill(some, values) for blocks of the references, at once if they are many. Values are joined by join(to, from), in
-/// any order with the same outcome.
+/// fill(i, values) for the references i, blocks of them at once if they are many. Values are joined by join(to, from),
+/// in any order with the same outcome.
 template <class T, class Fill, class Join>
-void fill_slices(std::span<const Reference> references, uint32_t slices, PerSlice<T>& values, Fill&& fill,
-                 Join&& join) {
+void fill_slices(size_t references, uint32_t slices, PerSlice<T>& values, Fill&& fill, Join&& join) {
   std::fill_n(values.begin(), slices, T{});
-  if (references.size() < 2 * kGrain) return fill(references, values);
-  std::vector<PerSlice<T>> blocks((references.size() + kGrain - 1) / kGrain);
-  parallel_for(references.size(), kGrain,
-               [&](size_t begin, size_t end) { fill(references.subspan(begin, end - begin), blocks[begin / kGrain]); });
+  const auto fill_some = [&](size_t begin, size_t end, PerSlice<T>& to) {
+    for (size_t i = begin; i < end; ++i) fill(i, to);
+  };
+  if (references < 2 * kGrain) return fill_some(0, references, values);
+  std::vector<PerSlice<T>> blocks((references + kGrain - 1) / kGrain);
+  parallel_for(references, kGrain,
+               [&](size_t begin, size_t end) { fill_some(begin, end, blocks[begin / kGrain]); });
   for (const PerSlice<T>& block : blocks) {
     for (uint32_t i = 0; i < slices; ++i) join(values[i], block[i]);
   }
@@ -47,9 +49,9 @@ void fill_slices(std::span<const Reference> references, uint32_t slices, PerSlic
 /// The search along one axis.
 class AxisSearch {
  public:
-  AxisSearch(std::span<const Reference> references, const SpatialSlices& slices, uint32_t axis, const Clipper& clipper,
-             const SpatialLimits& limits)
-      : references_(references), slices_(slices), axis_(axis), clipper_(clipper), limits_(limits) {}
+  AxisSearch(std::span<const Reference> references, std::span<const float> weights, const SpatialSlices& slices,
+             uint32_t axis, const Clipper& clipper, const SpatialLimits& limits)
+      : references_(references), weights_(weights), slices_(slices), axis_(axis), clipper_(clipper), limits_(limits) {}
 
   /// Puts a cheaper plane than `best`, if there is one, into its place.
   void improve(SpatialPlane& best) {
@@ -59,10 +61,8 @@ class AxisSearch {
     if (last_plane_ == 0) return;
     PerSlice<Box3f> boxes;
     fill_slices(
-        references_, slices_.count(), boxes,
-        [&](std::span<const Reference> some, PerSlice<Box3f>& to) {
-          for (const Reference& reference : some) add_pieces(reference, to);
-        },
+        references_.size(), slices_.count(), boxes,
+        [&](size_t i, PerSlice<Box3f>& to) { add_pieces(references_[i], to); },
         [](Box3f& to, const Box3f& from) { to.extend(from); });
     compare(boxes, best);
   }
@@ -70,23 +70,22 @@ class AxisSearch {
  private:
   void count() {
     fill_slices(
-        references_, slices_.count(), tallies_,
-        [&](std::span<const Reference> some, PerSlice<Tally>& to) {
-          for (const Reference& reference : some) {
-            const SpatialSlices::Span span = slices_.span(reference, axis_);
-            ++to[span.first].first_count;
-            to[span.first].first.extend(reference.bounds());
-            ++to[span.last].last_count;
-            to[span.last].last.extend(reference.bounds());
-          }
+        references_.size(), slices_.count(), tallies_,
+        [&](size_t i, PerSlice<Tally>& to) {
+          const Reference& reference = references_[i];
+          const SpatialSlices::Span span = slices_.span(reference, axis_);
+          const double weight = weights_.empty() ? 1 : weights_[i];
+          to[span.first].first_count += weight;
+          to[span.first].first.extend(reference.bounds());
+          to[span.last].last_count += weight;
+          to[span.last].last.extend(reference.bounds());
         },
         [](Tally& to, const Tally& from) { to.add(from); });
   }
 
   bool is_allowed(uint32_t plane) const {
-    const uint32_t below = below_count_[plane], above = above_count_[plane];
-    return below > 0 && above > 0 && uint64_t{below} + above <= limits_.both &&
-           std::max(below, above) <= limits_.either;
+    const double below = below_count_[plane], above = above_count_[plane];
+    return below > 0 && above > 0 && below + above <= limits_.both && std::max(below, above) <= limits_.either;
   }
 
   /// The first and last plane that may be cheaper than `best`: not even the boxes of the references that need no cut
@@ -94,7 +93,7 @@ class AxisSearch {
   void find_candidates(double best) {
     PerSlice<double> above_area;
     Box3f box;
-    uint32_t number = 0;
+    double number = 0;
     for (uint32_t i = slices_.count() - 1; i > 0; --i) {
       box.extend(tallies_[i].first);
       above_count_[i] = number += tallies_[i].last_count;
@@ -153,12 +152,13 @@ class AxisSearch {
   }
 
   std::span<const Reference> references_;
+  std::span<const float> weights_;
   const SpatialSlices& slices_;
   uint32_t axis_;
   const Clipper& clipper_;
   const SpatialLimits& limits_;
   PerSlice<Tally> tallies_;
-  PerSlice<uint32_t> below_count_, above_count_;  // by plane; those across count on both sides
+  PerSlice<double> below_count_, above_count_;   // by plane; those across count on both sides
   uint32_t first_plane_ = 1, last_plane_ = 0;
 };
 
@@ -191,11 +191,11 @@ SpatialSlices::Span SpatialSlices::span(const Reference& reference, uint32_t axi
   return {std::min(first, last), last};
 }
 
-SpatialPlane cheapest_spatial_plane(std::span<const Reference> references, const SpatialSlices& slices,
-                                    const Clipper& clipper, const SpatialLimits& limits) {
+SpatialPlane cheapest_spatial_plane(std::span<const Reference> references, std::span<const float> weights,
+                                    const SpatialSlices& slices, const Clipper& clipper, const SpatialLimits& limits) {
   SpatialPlane best;
   for (uint32_t axis = 0; axis < 3; ++axis) {
-    if (slices.is_usable(axis)) AxisSearch(references, slices, axis, clipper, limits).improve(best);
+    if (slices.is_usable(axis)) AxisSearch(references, weights, slices, axis, clipper, limits).improve(best);
   }
   return best;
 }

@@ -21,6 +21,8 @@ class SpatialSlices {
   uint32_t count() const { return count_; }
   /// False: no planes, for the box is flat here, or as good as.
   bool is_usable(uint32_t axis) const { return usable_[axis]; }
+  /// No planes across this axis.
+  void leave_out(uint32_t axis) { usable_[axis] = false; }
   /// Plane 0 and plane count() are the box's sides.
   float plane(uint32_t axis, uint32_t i) const { return planes_[axis][i]; }
 
@@ -40,22 +42,23 @@ struct SpatialPlane {
   double cost = std::numeric_limits<double>::infinity();  ///< area times count, both sides added
   uint32_t axis = 0;
   float position = 0;
-  uint32_t below_count = 0, above_count = 0;  ///< references across the plane count on both sides; 0: no plane
-  Box3f below, above;                         ///< may be too large: cuts are guessed at
+  double below_count = 0, above_count = 0;  ///< references across the plane count on both sides; 0: no plane
+  Box3f below, above;                       ///< may be too large: cuts are guessed at
 
   bool is_found() const { return below_count > 0; }
 };
 
 /// What a plane must keep to.
 struct SpatialLimits {
-  uint64_t both;    ///< references on the two sides together, at most
-  uint64_t either;  ///< on one side, at most
-  double cost;      ///< must be below
+  double both;    ///< references on the two sides together, at most
+  double either;  ///< on one side, at most
+  double cost;    ///< must be below
 };
 
 /// The plane between two slices with the least area times count, if references across it are cut there; nothing if none
-/// within the limits has something on both sides. Parallel for many references.
-SpatialPlane cheapest_spatial_plane(std::span<const Reference> references, const SpatialSlices& slices,
-                                    const Clipper& clipper, const SpatialLimits& limits);
+/// within the limits has something on both sides. Each reference counts as many times as `weights` says, a whole number;
+/// once if it is empty. Parallel for many references.
+SpatialPlane cheapest_spatial_plane(std::span<const Reference> references, std::span<const float> weights,
+                                    const SpatialSlices& slices, const Clipper& clipper, const SpatialLimits& limits);
 
 }  // namespace kerf

@@ -40,7 +40,7 @@ class Unsplitting {
 
  private:
   Box3f below_, above_;
-  uint32_t below_count_, above_count_;
+  double below_count_, above_count_;
 };
 
 /// The boxes of the parts of a reference; at least one is not empty.

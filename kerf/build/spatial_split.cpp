@@ -68,7 +68,8 @@ class SpatialSplit {
       cost = std::min(cost, leaf * half_area(subset.bounds));
     }
     const SpatialSlices slices(subset.bounds, own_.spatial_bins);
-    return cheapest_spatial_plane(order_.references(subset), slices, clipper_, {subset.room(), most, cost});
+    return cheapest_spatial_plane(order_.references(subset), {}, slices, clipper_,
+                                  {static_cast<double>(subset.room()), static_cast<double>(most), cost});
   }
 
   Halves divide_whole(const Subset& subset, const detail::Slices& slices, const detail::Plane& plane, uint64_t most) {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -20,6 +21,7 @@ namespace {
 
 constexpr size_t kSamples = 4096;      // of small references, that judge planes with all large ones; if that is more:
 constexpr size_t kSampleShare = 64;    // one of so many
+constexpr size_t kOthers = 65536;      // about twice as many, at most, show how far a cell reaches
 constexpr size_t kCandidateShare = 2;  // of so many the largest may be cut
 constexpr size_t kThresholdProbes = 65536;
 constexpr size_t kGrain = 16384;
@@ -29,86 +31,78 @@ constexpr int kSteps = 5;
 
 /// The boxes of a scene as a whole.
 struct Areas {
-  std::vector<float> of;  ///< each reference's half area / that of the box around all
-  double whole = 0;       ///< half area of the box around all
-  double sum = 0;         ///< of `of`
+  double whole = 0;      ///< half area of the box around all
+  double sum = 0;        ///< of the references' half areas / that
+  double large = 0;      ///< half area that few pass: they are judges each
+  double candidate = 0;  ///< half area below which nothing is cut
 
   /// Predicted cost of a random line through n references whose half areas add up to `areas` times the whole.
   static double cost(double n, double areas) { return std::log2(n + 1) + areas; }
-
-  /// An area that about every `share`-th reference passes, judged by evenly spaced probes.
-  float passed_by(size_t share) const {
-    const size_t step = (of.size() + kThresholdProbes - 1) / kThresholdProbes;
-    std::vector<float> probes;
-    for (size_t i = 0; i < of.size(); i += step) probes.push_back(of[i]);
-    const size_t rank = std::min(probes.size() - 1, probes.size() / share);
-    std::nth_element(probes.begin(), probes.begin() + static_cast<ptrdiff_t>(rank), probes.end(), std::greater<>());
-    return probes[rank];
-  }
 };
+
+/// Of small references that judge planes, one stands for so many.
+size_t sample_rate(size_t references) { return std::clamp<size_t>(references / kSamples, 1, kSampleShare); }
+
+/// The sum of f(reference) over blocks in order.
+template <class F>
+double sum_of(std::span<const Reference> references, F&& f) {
+  std::vector<double> sums((references.size() + kGrain - 1) / kGrain);
+  parallel_for(references.size(), kGrain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) sums[begin / kGrain] += f(references[i]);
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
 
 Areas measure(std::span<const Reference> references) {
   Areas areas;
-  areas.of.resize(references.size());
-  const size_t blocks = (references.size() + kGrain - 1) / kGrain;
   areas.whole = half_area(box_around(references));
-  std::vector<double> sums(blocks);
-  parallel_for(references.size(), kGrain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const double share = half_area(references[i].bounds()) / areas.whole;
-      areas.of[i] = static_cast<float>(share);
-      sums[begin / kGrain] += share;
-    }
-  });
-  for (const double sum : sums) areas.sum += sum;
+  if (!(areas.whole > 0)) return areas;
+  areas.sum = sum_of(references, [&](const Reference& r) { return half_area(r.bounds()) / areas.whole; });
+  // Evenly spaced probes tell which area every so many-th passes, about.
+  const size_t step = (references.size() + kThresholdProbes - 1) / kThresholdProbes;
+  std::vector<double> probes;
+  for (size_t i = 0; i < references.size(); i += step) probes.push_back(half_area(references[i].bounds()));
+  const auto passed_by = [&](size_t share) {
+    const auto place = probes.begin() + static_cast<ptrdiff_t>(std::min(probes.size() - 1, probes.size() / share));
+    std::nth_element(probes.begin(), place, probes.end(), std::greater<>());
+    return *place;
+  };
+  areas.candidate = passed_by(kCandidateShare);
+  areas.large = passed_by(sample_rate(references.size()));
   return areas;
 }
 
-/// The references that the guide is for, all of which may be cut: the larger half, and a sample of all, which judges.
-std::vector<GuidedReference> to_guide(std::span<const Reference> whole, const Areas& areas) {
-  const size_t rate = std::clamp<size_t>(whole.size() / kSamples, 1, kSampleShare);
-  const float large = areas.passed_by(rate), candidate = areas.passed_by(kCandidateShare);
-  std::vector<GuidedReference> guided;
-  for (uint32_t i = 0; i < whole.size(); ++i) {
-    const bool is_large = areas.of[i] > large;
-    if (is_large || i % rate == 0) {
-      guided.push_back({whole[i], i, is_large ? 1.0F : static_cast<float>(rate)});
-    } else if (areas.of[i] >= candidate) {
-      guided.push_back({whole[i], i, 0});
+/// All large references, and a sample of the others.
+Judges choose_judges(std::span<const Reference> whole, const Areas& areas) {
+  const size_t rate = sample_rate(whole.size()), others_rate = std::max<size_t>(1, whole.size() / kOthers);
+  Judges judges;
+  for (size_t i = 0; i < whole.size(); ++i) {
+    if (half_area(whole[i].bounds()) > areas.large) {
+      judges.add(whole[i], 1);
+    } else if (i % rate == 0) {
+      judges.add(whole[i], static_cast<float>(rate));
+    } else if (i % others_rate == 0 && half_area(whole[i].bounds()) >= areas.candidate) {
+      judges.others.push_back(whole[i].bounds());
     }
   }
-  return guided;
+  return judges;
 }
 
-/// All references in the caller's order, each that went through the guide replaced by its pieces.
-std::vector<Reference> gather(std::span<const Reference> whole, const GuidedPieces& pieces) {
-  std::vector<uint32_t> begins(whole.size() + 1);  // first how many pieces each has, then where they begin
-  for (const auto& cell : pieces.cells) {
-    for (const GuidedReference& guided : cell) ++begins[guided.place];
-  }
-  uint32_t begin = 0;
-  for (uint32_t& count : begins) {
-    if (&count != &begins.back()) count = std::max<uint32_t>(1, count);
-    begin += std::exchange(count, begin);
-  }
-  std::vector<Reference> all(begins.back());
-  for (size_t i = 0; i < whole.size(); ++i) all[begins[i]] = whole[i];
-  for (const auto& cell : pieces.cells) {
-    for (const GuidedReference& guided : cell) all[begins[guided.place]++] = guided.reference;
-  }
-  return all;
-}
+/// What a guide made of all references, in the caller's order.
+struct GuidedPieces {
+  std::vector<Reference> references;
+  GainCurve curve;
+};
 
 /// How the predicted cost fell: first by the guide's planes, then by cuts in its cells, the most saving first.
 SplitChoice explain(std::span<const Reference> whole, std::span<const Reference> pieces, const Areas& areas,
-                    const GuidedPieces& guided) {
+                    const GainCurve& curve) {
   const auto n = static_cast<double>(whole.size());
-  double sum = 0;
-  for (const Reference& piece : pieces) sum += half_area(piece.bounds()) / areas.whole;
+  double sum = sum_of(pieces, [&](const Reference& piece) { return half_area(piece.bounds()) / areas.whole; });
   auto count = static_cast<double>(pieces.size());
   SplitChoice choice;
   choice.curve.push_back({count / n, Areas::cost(count, sum)});
-  for (const GainCurve::Bucket& bucket : guided.curve.buckets) {  // backwards, the least saving first
+  for (const GainCurve::Bucket& bucket : curve.buckets) {  // backwards, the least saving first
     if (bucket.references == 0) continue;
     count -= static_cast<double>(bucket.references);
     sum += bucket.saved / areas.whole;
@@ -140,7 +134,7 @@ std::string reason_of(const SplitChoice& choice, bool capped, double cap, const 
 class Attempts {
  public:
   Attempts(const SplitInput& input, const Areas& areas, size_t most)
-      : input_(input), to_cut_(to_guide(input.whole, areas)), most_(most) {
+      : input_(input), areas_(areas), judges_(choose_judges(input.whole, areas)), most_(most) {
     const auto n = static_cast<double>(input.whole.size());
     rules_.scene_unit = Areas::cost(n, areas.sum) / n * areas.whole;
   }
@@ -154,11 +148,16 @@ class Attempts {
     rules_.cell_gain = GuideRules{}.cell_gain * more;
     rules_.scene_gain = GuideRules{}.scene_gain * strictness;
     rules_.plane_gain = kPlaneGain * (more - 1);
-    GuidedPieces pieces = guide_splits(to_cut_, input_.geometries, input_.clipper, rules_, input_.limit);
-    size_t count = input_.whole.size() - to_cut_.size();
-    for (const auto& cell : pieces.cells) count += cell.size();
-    if (count > most_) return std::nullopt;
-    return pieces;
+    const SplitGuide guide(judges_, input_.geometries, rules_, input_.limit);
+    std::vector<GainCurve> curves((input_.whole.size() + kSplitGrain - 1) / kSplitGrain);
+    auto pieces = split_each(input_.whole, most_, input_.limit, [&](const Reference& reference, const auto& emit) {
+      if (half_area(reference.bounds()) < areas_.candidate) return static_cast<void>(emit(reference));
+      guide.split(reference, input_.clipper, curves[static_cast<size_t>(&reference - input_.whole.data()) / kSplitGrain], emit);
+    });
+    if (!pieces) return std::nullopt;
+    GuidedPieces guided{std::move(*pieces), {}};
+    for (const GainCurve& curve : curves) guided.curve.add(curve);
+    return guided;
   }
 
   /// The most pieces found that fit, when at(1) are too many; nothing if none do.
@@ -181,7 +180,8 @@ class Attempts {
 
  private:
   const SplitInput& input_;
-  std::vector<GuidedReference> to_cut_;
+  const Areas& areas_;
+  Judges judges_;
   size_t most_;
   GuideRules rules_;
 };
@@ -194,22 +194,26 @@ SplitResult split_automatically(const SplitInput& input, const AutomaticSplit& o
                 "cap is " + std::to_string(options.cap) + "; it must be at least 1 reference per primitive");
   }
   const std::span<const Reference> whole = input.whole;
-  SplitResult result{{whole.begin(), whole.end()}, std::numeric_limits<double>::quiet_NaN(), false, SplitChoice{}};
-  // At the peak: the references for the guide, the pieces of two attempts, and the outcome.
-  input.limit.check(whole.size() * (sizeof(GuidedReference) + 2 * sizeof(Reference)) +
-                    most_references(whole.size(), options.cap) * sizeof(GuidedReference));
+  SplitResult result{{}, std::numeric_limits<double>::quiet_NaN(), false, SplitChoice{}};
+  // At the peak: the pieces of one attempt beside those of the best before.
+  input.limit.check(2 * most_references(whole.size(), options.cap) * sizeof(Reference));
   const Areas areas = measure(whole);
   if (whole.empty() || !(areas.whole > 0)) {
     result.choice->curve = {{1, 0}};
     result.choice->reason = "nothing is cut: there is nothing with a volume or an area";
+    result.references.assign(whole.begin(), whole.end());
     return result;
   }
   Attempts attempts(input, areas, most_references(whole.size(), options.cap));
   std::optional<GuidedPieces> pieces = attempts.at(1);
   result.capped = !pieces;
   if (!pieces) pieces = attempts.fitting();
-  if (pieces) result.references = gather(whole, *pieces);
-  result.choice = explain(whole, result.references, areas, pieces.value_or(GuidedPieces{}));
+  if (pieces) {
+    result.references = std::move(pieces->references);
+  } else {
+    result.references.assign(whole.begin(), whole.end());
+  }
+  result.choice = explain(whole, result.references, areas, pieces ? pieces->curve : GainCurve{});
   result.choice->reason = reason_of(*result.choice, result.capped, options.cap, attempts.rules());
   return result;
 }

@@ -5,13 +5,13 @@
 #include <cmath>
 
 #include "kerf/build/reference_order.h"
-#include "kerf/choose/slab_bounds.h"
+#include "kerf/build/spatial_bins.h"
 
 namespace kerf {
 namespace {
 
 constexpr uint32_t kBins = GuidePlane::kBins;
-static_assert(kBins <= kMostSlabs);
+static_assert(kBins <= SpatialSlices::kMost);
 // Planes across a side shorter than this share of the longest are not tried: they leave two long parts, and trees are
 // as good without them.
 constexpr float kLeastLength = 0.5F;
@@ -20,21 +20,21 @@ uint32_t bin_of(float center, float first, float scale) {
   return static_cast<uint32_t>(std::clamp((center - first) * scale, 0.0F, static_cast<float>(kBins - 1)));
 }
 
-/// Slices of a node along one axis: the box of each, what begins there and what ends there.
+/// Slices of a node along one axis: the box of what has its centre there, and how much that is.
 struct Line {
   std::array<Box3f, kBins> bounds;
-  std::array<double, kBins> begins{}, ends{};
+  std::array<double, kBins> weights{};
 };
 
 /// Takes the cheapest place between two slices, if it is cheaper than `best`; returns whether it did.
-bool take_cheapest(const Line& line, double all, GuidePlane& best) {
+bool take_cheapest(const Line& line, GuidePlane& best) {
   std::array<Box3f, kBins> above;
   std::array<double, kBins> above_weight{};
   Box3f box;
   double weight = 0;
   for (uint32_t i = kBins - 1; i > 0; --i) {
     box.extend(line.bounds[i]);
-    weight += line.ends[i];
+    weight += line.weights[i];
     above[i] = box;
     above_weight[i] = weight;
   }
@@ -43,9 +43,8 @@ bool take_cheapest(const Line& line, double all, GuidePlane& best) {
   bool found = false;
   for (uint32_t i = 1; i < kBins; ++i) {
     box.extend(line.bounds[i - 1]);
-    weight += line.begins[i - 1];
-    // A plane that leaves everything on both sides divides nothing.
-    if (weight == 0 || above_weight[i] == 0 || (weight >= all && above_weight[i] >= all)) continue;
+    weight += line.weights[i - 1];
+    if (weight == 0 || above_weight[i] == 0) continue;
     const double cost = half_area(box) * weight + half_area(above[i]) * above_weight[i];
     if (!(cost < best.cost)) continue;
     best.cost = cost;
@@ -61,35 +60,45 @@ bool take_cheapest(const Line& line, double all, GuidePlane& best) {
 
 }  // namespace
 
-bool GuidePlane::is_below(const Reference& reference) const {
-  return bin_of(center2(reference, axis), first, scale) < bin;
+GuidePlane::Side GuidePlane::side_of(const Box3f& reference, double weight) const {
+  const float lower = reference.lower[axis], upper = reference.upper[axis];
+  if (!cuts) return bin_of(lower + upper, first, scale) < bin ? Side::below : Side::above;
+  if (!(upper > position)) return Side::below;
+  if (!(lower < position)) return Side::above;
+  const double below_area = half_area(below), above_area = half_area(above);
+  const double both = below_area * below_weight + above_area * above_weight;
+  const double only_below =
+      half_area(united(below, reference)) * below_weight + above_area * (above_weight - weight);
+  const double only_above =
+      below_area * (below_weight - weight) + half_area(united(above, reference)) * above_weight;
+  if (std::min(only_below, only_above) > both + toll * weight) return Side::both;
+  return only_below <= only_above ? Side::below : Side::above;
 }
 
-GuideNode::GuideNode(std::span<const GuidedReference> references) {
-  for (const GuidedReference& guided : references) {
-    bounds.extend(guided.reference.bounds());
-    if (guided.weight == 0) continue;
-    centers.extend(guided.reference.lower + guided.reference.upper);
-    weight += guided.weight;
-    ++weighty;
+JudgedBox::JudgedBox(const Judges& judges) {
+  for (const Reference& reference : judges.references) {
+    bounds.extend(reference.bounds());
+    centers.extend(reference.lower + reference.upper);
   }
+  for (const float judge : judges.weights) weight += judge;
+  all = bounds;
+  for (const Box3f& other : judges.others) all.extend(other);
 }
 
-GuidePlane cheapest_dividing_plane(std::span<const GuidedReference> references, const GuideNode& node) {
+GuidePlane cheapest_dividing_plane(const Judges& judges, const JudgedBox& box) {
   GuidePlane best;
   for (uint32_t axis = 0; axis < 3; ++axis) {
-    const float first = node.centers.lower[axis];
-    const float scale = static_cast<float>(kBins) / (node.centers.upper[axis] - first);
+    const float first = box.centers.lower[axis];
+    const float scale = static_cast<float>(kBins) / (box.centers.upper[axis] - first);
     if (!(scale > 0 && std::isfinite(scale))) continue;
     Line line;
-    for (const GuidedReference& guided : references) {
-      if (guided.weight == 0) continue;
-      const uint32_t bin = bin_of(center2(guided.reference, axis), first, scale);
-      line.bounds[bin].extend(guided.reference.bounds());
-      line.begins[bin] += guided.weight;
+    for (size_t i = 0; i < judges.size(); ++i) {
+      const Reference& reference = judges.references[i];
+      const uint32_t bin = bin_of(center2(reference, axis), first, scale);
+      line.bounds[bin].extend(reference.bounds());
+      line.weights[bin] += judges.weights[i];
     }
-    line.ends = line.begins;
-    if (!take_cheapest(line, node.weight, best)) continue;
+    if (!take_cheapest(line, best)) continue;
     best.axis = axis;
     best.first = first;
     best.scale = scale;
@@ -97,32 +106,27 @@ GuidePlane cheapest_dividing_plane(std::span<const GuidedReference> references, 
   return best;
 }
 
-GuidePlane cheapest_cutting_plane(std::span<const GuidedReference> references, const GuideNode& node,
-                                  std::span<const Geometry> geometries) {
-  GuidePlane best;
-  const float longest = largest(node.bounds.extent());
+GuidePlane cheapest_cutting_plane(const Judges& judges, const JudgedBox& box, const Clipper& clipper, double cost) {
+  SpatialSlices slices(box.bounds, kBins);
+  const Vec3f extent = box.bounds.extent();
   for (uint32_t axis = 0; axis < 3; ++axis) {
-    const Slabs slabs(node.bounds, axis, kBins);
-    if (!slabs.is_usable() || slabs.extent < kLeastLength * longest) continue;
-    Line line;
-    for (const GuidedReference& guided : references) {
-      if (guided.weight == 0) continue;
-      const uint32_t begin = slabs.slab_of(guided.reference.lower[axis]);
-      const uint32_t end = slabs.slab_of(guided.reference.upper[axis]);
-      line.begins[begin] += guided.weight;
-      line.ends[end] += guided.weight;
-      if (begin == end) {
-        line.bounds[begin].extend(guided.reference.bounds());
-      } else {
-        extend_by_parts(geometries, guided.reference, slabs, begin, end, line.bounds.data());
-      }
-    }
-    if (!take_cheapest(line, node.weight, best)) continue;
-    best.axis = axis;
-    best.cuts = true;
-    best.position = slabs.plane(best.bin);
+    if (extent[axis] < kLeastLength * largest(extent)) slices.leave_out(axis);
   }
-  return best;
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  // A plane that leaves everything on both sides divides nothing.
+  const SpatialLimits limits{2 * box.weight - 1, kAny, cost};
+  const SpatialPlane plane = cheapest_spatial_plane(judges.references, judges.weights, slices, clipper, limits);
+  if (!plane.is_found()) return {};
+  GuidePlane found;
+  found.cost = plane.cost;
+  found.cuts = true;
+  found.axis = plane.axis;
+  found.position = plane.position;
+  found.below = plane.below;
+  found.above = plane.above;
+  found.below_weight = plane.below_count;
+  found.above_weight = plane.above_count;
+  return found;
 }
 
 }  // namespace kerf

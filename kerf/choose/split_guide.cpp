@@ -2,19 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "kerf/base/parallel.h"
-#include "kerf/choose/guide_planes.h"
+#include "kerf/choose/rough_clip.h"
 #include "kerf/references/middle_cut.h"
 
 namespace kerf {
 namespace {
 
 constexpr double kCellWeight = 64;    // references that a cell stands for, about
-constexpr size_t kCellWeighty = 8;    // fewer say little about where to cut
+constexpr size_t kCellJudges = 8;     // fewer say little about where to cut
 constexpr uint32_t kMostLevels = 48;  // of the guide
-constexpr size_t kParallel = 2048;    // references that are worth a task
-constexpr size_t kStepsPerCheck = 1024;
+constexpr size_t kParallel = 1024;    // judges that are worth a task
 /// Planes through references are tried where the children of the best plane between them overlap by this share of the
 /// node's area.
 constexpr double kLeastOverlap = 0.01;
@@ -23,37 +23,66 @@ constexpr double kLeastOverlap = 0.01;
 constexpr double kLeastSaving = 0.3;
 constexpr double kMostSaving = 0.75;  // hardly any cut saves more, so what has less than it should save is not tried
 
-class Guide {
+/// What a cut in the middle saves of a piece's half area; nothing if it is not worth it.
+struct MiddleCut {
+  ClippedBoxes parts;
+  double saved = 0;
+
+  bool has_both() const { return !parts.below.is_empty() && !parts.above.is_empty(); }
+};
+
+std::optional<MiddleCut> worthwhile_cut(const Reference& reference, const Clipper& clipper, double least) {
+  const double before = half_area(reference.bounds());
+  if (!(kMostSaving * before > least)) return std::nullopt;
+  const auto parts = cut_in_the_middle(reference, clipper);
+  if (!parts) return std::nullopt;
+  const double saved = before - half_area(parts->below) - half_area(parts->above);
+  if (saved < kLeastSaving * before || !(saved > least)) return std::nullopt;
+  return MiddleCut{*parts, saved};
+}
+
+}  // namespace
+
+/// Of the guide: a plane and what lies on its two sides, or a cell.
+struct SplitGuide::Node {
+  GuidePlane plane;  ///< exists() but in a cell
+  std::unique_ptr<const Node> below, above;
+  double least_saving = 0;    ///< half area that a cut in the middle must save; above cells: the least of them
+  bool cuts = false;          ///< a plane here or below goes through references
+  double gain_of_saving = 0;  ///< of a cell: what turns half area saved into a gain, for the curve
+};
+
+/// Makes the nodes.
+class SplitGuide::Building {
  public:
-  Guide(std::span<const Geometry> geometries, const Clipper& clipper, const GuideRules& rules, const WorkLimit& limit)
-      : geometries_(geometries), clipper_(clipper), rules_(rules), limit_(limit) {}
+  Building(const std::span<const Geometry>& geometries, const GuideRules& rules, const WorkLimit& limit)
+      : clipper_(rough_clipper(geometries)), rules_(rules), limit_(limit) {}
 
   /// `room`: how many pieces these may become by the guide's planes.
-  GuidedPieces divide(std::vector<GuidedReference> references, size_t room, uint32_t level) const {
-    if (references.size() >= kParallel) limit_.check();
-    const GuideNode node(references);
-    if (node.weight <= kCellWeight || node.weighty <= kCellWeighty || level == kMostLevels) {
-      return cell(std::move(references), node);
+  std::unique_ptr<const Node> node(Judges judges, size_t room, uint32_t level) const {
+    if (judges.size() >= kParallel) limit_.check();
+    const JudgedBox box(judges);
+    if (box.weight <= kCellWeight || judges.size() <= kCellJudges || level == kMostLevels) {
+      return cell(std::move(judges), box);
     }
-    std::vector<GuidedReference> below, above;
-    part(references, node, room, below, above);
-    if (below.empty() || above.empty()) return cell(std::move(references), node);
-    const bool is_large = references.size() >= kParallel;
+    Judges below, above;
+    auto node = std::make_unique<Node>();
+    node->plane = divide(judges, box, room, below, above);
+    if (!node->plane.exists()) return cell(std::move(judges), box);
+    const bool is_large = judges.size() >= kParallel;
     const size_t below_room = share_of(room, below.size(), above.size());
-    std::vector<GuidedReference>().swap(references);
-    GuidedPieces first, second;
-    const auto go_below = [&] { first = divide(std::move(below), below_room, level + 1); };
-    const auto go_above = [&] { second = divide(std::move(above), room - below_room, level + 1); };
+    judges = {};
+    const auto go_below = [&] { node->below = this->node(std::move(below), below_room, level + 1); };
+    const auto go_above = [&] { node->above = this->node(std::move(above), room - below_room, level + 1); };
     if (is_large) {
       parallel_invoke(go_below, go_above);
     } else {
       go_below();
       go_above();
     }
-    first.cells.insert(first.cells.end(), std::make_move_iterator(second.cells.begin()),
-                       std::make_move_iterator(second.cells.end()));
-    first.curve.add(second.curve);
-    return first;
+    node->least_saving = std::min(node->below->least_saving, node->above->least_saving);
+    node->cuts = node->plane.cuts || node->below->cuts || node->above->cuts;
+    return node;
   }
 
  private:
@@ -62,133 +91,131 @@ class Guide {
     return std::clamp(static_cast<size_t>(share * static_cast<double>(room)), below, room - above);
   }
 
-  /// Divides a node's references at the better plane; one side stays empty where none divides them.
-  void part(std::span<const GuidedReference> references, const GuideNode& node, size_t room,
-            std::vector<GuidedReference>& below, std::vector<GuidedReference>& above) const {
-    const GuidePlane divider = cheapest_dividing_plane(references, node);
-    if (is_worth_cutting(divider, node)) {
-      const GuidePlane cutter = cheapest_cutting_plane(references, node, geometries_);
-      const double added = cutter.below_weight + cutter.above_weight - node.weight;
-      const double toll = rules_.plane_gain * half_area(node.bounds) * added;
-      const double otherwise = divider.exists() ? divider.cost : half_area(node.bounds) * node.weight;
-      if (cutter.cost + toll < otherwise) {
-        cut(references, node, cutter, below, above);
+  /// Divides the judges at the better plane; none if none divides them.
+  GuidePlane divide(const Judges& judges, const JudgedBox& box, size_t room, Judges& below, Judges& above) const {
+    const double area = half_area(box.bounds);
+    const GuidePlane divider = cheapest_dividing_plane(judges, box);
+    if (is_worth_cutting(divider, area)) {
+      const double otherwise = divider.exists() ? divider.cost : area * box.weight;
+      GuidePlane cutter = cheapest_cutting_plane(judges, box, clipper_, otherwise);
+      cutter.toll = rules_.plane_gain * area;
+      const double added = cutter.below_weight + cutter.above_weight - box.weight;
+      if (cutter.cost + cutter.toll * added < otherwise) {
+        part(judges, cutter, below, above);
         // Kept whole, all may have gone to one side.
-        if (!below.empty() && !above.empty() && below.size() + above.size() <= room) return;
-        below.clear();
-        above.clear();
+        if (!below.empty() && !above.empty() && below.size() + above.size() <= room) return cutter;
+        below = above = {};
       }
     }
-    if (divider.exists()) {
-      for (const GuidedReference& guided : references) {
-        (divider.is_below(guided.reference) ? below : above).push_back(guided);
-      }
-    }
+    if (divider.exists()) part(judges, divider, below, above);
+    return divider;
   }
 
-  static bool is_worth_cutting(const GuidePlane& divider, const GuideNode& node) {
+  static bool is_worth_cutting(const GuidePlane& divider, double area) {
     if (!divider.exists()) return true;
-    return half_area(intersected(divider.below, divider.above)) > kLeastOverlap * half_area(node.bounds);
+    return half_area(intersected(divider.below, divider.above)) > kLeastOverlap * area;
   }
 
-  /// References across the plane go to both sides, or whole to one where that is cheaper (Stich et al. 2009, section
-  /// 4.4, with the sides as they were judged).
-  void cut(std::span<const GuidedReference> references, const GuideNode& node, const GuidePlane& plane,
-           std::vector<GuidedReference>& below, std::vector<GuidedReference>& above) const {
-    const double below_area = half_area(plane.below), above_area = half_area(plane.above);
-    const double both = below_area * plane.below_weight + above_area * plane.above_weight;
-    const double toll = rules_.plane_gain * half_area(node.bounds);  // of one more reference
-    for (const GuidedReference& guided : references) {
-      const Reference& reference = guided.reference;
-      const bool reaches_below = reference.lower[plane.axis] < plane.position;
-      const bool reaches_above = reference.upper[plane.axis] > plane.position;
-      if (!(reaches_below && reaches_above)) {
-        (reaches_above ? above : below).push_back(guided);
-        continue;
+  void part(const Judges& judges, const GuidePlane& plane, Judges& below, Judges& above) const {
+    for (size_t i = 0; i < judges.size(); ++i) {
+      const Reference& reference = judges.references[i];
+      const float weight = judges.weights[i];
+      switch (plane.side_of(reference.bounds(), weight)) {
+        case GuidePlane::Side::below:
+          below.add(reference, weight);
+          break;
+        case GuidePlane::Side::above:
+          above.add(reference, weight);
+          break;
+        case GuidePlane::Side::both:
+          const ClippedBoxes parts = clipper_(reference, plane.axis, plane.position);
+          if (!parts.below.is_empty()) below.add(with_box(reference, parts.below), weight);
+          if (!parts.above.is_empty()) above.add(with_box(reference, parts.above), weight);
       }
-      const double weight = std::max(1.0F, guided.weight);
-      const double only_below = half_area(united(plane.below, reference.bounds())) * plane.below_weight +
-                                above_area * (plane.above_weight - weight);
-      const double only_above = below_area * (plane.below_weight - weight) +
-                                half_area(united(plane.above, reference.bounds())) * plane.above_weight;
-      if (std::min(only_below, only_above) <= both + toll * weight) {
-        (only_below <= only_above ? below : above).push_back(guided);
-        continue;
-      }
-      const ClippedBoxes parts = clipper_(reference, plane.axis, plane.position);
-      const bool is_lost = parts.below.is_empty() && parts.above.is_empty();  // only by rounding: keep what we had
-      if (is_lost) below.push_back(guided);
-      if (!parts.below.is_empty()) below.push_back(piece(guided, parts.below));
-      if (!parts.above.is_empty()) above.push_back(piece(guided, parts.above));
+    }
+    for (Box3f other : judges.others) {
+      const GuidePlane::Side side = plane.side_of(other, 1);
+      const float upper = other.upper[plane.axis];
+      if (side == GuidePlane::Side::both) other.upper[plane.axis] = plane.position;
+      if (side != GuidePlane::Side::above) below.others.push_back(other);
+      if (side == GuidePlane::Side::both) other.lower[plane.axis] = std::exchange(other.upper[plane.axis], upper);
+      if (side != GuidePlane::Side::below) above.others.push_back(other);
     }
   }
 
-  static GuidedReference piece(GuidedReference guided, const Box3f& box) {
-    guided.reference = with_box(guided.reference, box);
-    return guided;
-  }
-
-  /// The end of the guide: what is large for this cell is cut until that does not pay any more. The predicted cost of a
-  /// cell is the way down a tree over it and the boxes that a line through it crosses: log2(n) + sum of areas / area.
-  GuidedPieces cell(std::vector<GuidedReference> references, const GuideNode& node) const {
-    GuidedPieces pieces;
-    const double area = half_area(node.bounds);
-    double sum = 0, count = 0;
-    for (const GuidedReference& guided : references) {
-      sum += guided.weight * half_area(guided.reference.bounds());
-      count += guided.weight;
-    }
-    // Each round the cell's cost is lower, so what is left is worth more of it.
+  /// The end of the guide: how much a cut must save here. The predicted cost of a cell is the way down a tree over it
+  /// and the boxes that a line through it crosses: log2(n) + sum of areas / area. Once judges are cut it is lower, so
+  /// the next cuts are worth more of it: some rounds.
+  std::unique_ptr<const Node> cell(Judges judges, const JudgedBox& box) const {
     constexpr int kRounds = 3;
-    for (int round = 0; round < kRounds && count > 0; ++round) {
-      const double cell_unit = (std::log2(count + 1) * area + sum) / count;
-      const size_t before = references.size();
-      references = cut_in_cell(references, cell_unit, sum, count, pieces.curve);
-      if (references.size() == before) break;
+    const double area = half_area(box.all);
+    double sum = 0, count = box.weight;
+    for (size_t i = 0; i < judges.size(); ++i) sum += judges.weights[i] * half_area(judges.references[i].bounds());
+    auto cell = std::make_unique<Node>();
+    for (int round = 0; round < kRounds; ++round) {
+      const double unit = (std::log2(count + 1) * area + sum) / count;
+      cell->least_saving = std::min(unit * rules_.cell_gain, rules_.scene_unit * rules_.scene_gain);
+      cell->gain_of_saving = 1 / std::min(unit, rules_.scene_unit);
+      const size_t before = judges.size();
+      cut_in_cell(judges, cell->least_saving, sum, count);
+      if (judges.size() == before) break;
     }
-    if (!references.empty()) pieces.cells.push_back(std::move(references));
-    return pieces;
+    return cell;
   }
 
-  std::vector<GuidedReference> cut_in_cell(const std::vector<GuidedReference>& references, double cell_unit,
-                                           double& sum, double& count, GainCurve& curve) const {
-    const double unit = std::min(cell_unit * rules_.cell_gain, rules_.scene_unit * rules_.scene_gain);
-    std::vector<GuidedReference> cut, stack;
-    cut.reserve(references.size());
-    size_t steps = 0;
-    for (const GuidedReference& whole : references) {
-      stack.assign(1, whole);
-      while (!stack.empty()) {
-        if (++steps % kStepsPerCheck == 0) limit_.check();
-        GuidedReference guided = stack.back();
-        stack.pop_back();
-        const double before = half_area(guided.reference.bounds());
-        const bool is_tried = !guided.is_settled && kMostSaving * before > unit;
-        const auto parts = is_tried ? cut_in_the_middle(guided.reference, clipper_) : std::nullopt;
-        const double saved = parts ? before - half_area(parts->below) - half_area(parts->above) : 0;
-        guided.is_settled = guided.is_settled || (is_tried && saved < kLeastSaving * before);
-        if (guided.is_settled || !(saved > unit)) {
-          cut.push_back(guided);
-          continue;
-        }
-        const bool has_both = !parts->below.is_empty() && !parts->above.is_empty();
-        sum -= guided.weight * saved;
-        count += has_both ? guided.weight : 0;
-        curve.add(saved / std::min(cell_unit, rules_.scene_unit), saved, has_both ? 1 : 0);
-        if (!parts->above.is_empty()) stack.push_back(piece(guided, parts->above));
-        if (!parts->below.is_empty()) stack.push_back(piece(guided, parts->below));
+  void cut_in_cell(Judges& judges, double least, double& sum, double& count) const {
+    for (size_t i = 0; i < judges.size(); ++i) {
+      const float weight = judges.weights[i];
+      while (const auto cut = worthwhile_cut(judges.references[i], clipper_, least)) {
+        sum -= weight * cut->saved;
+        count += cut->has_both() ? weight : 0;
+        // Parts that wait behind the others get their turn in this round, too.
+        if (cut->has_both()) judges.add(with_box(judges.references[i], cut->parts.above), weight);
+        judges.references[i] = with_box(judges.references[i], united(cut->parts.below, cut->has_both() ? Box3f{} : cut->parts.above));
       }
     }
-    return cut;
   }
 
-  std::span<const Geometry> geometries_;
-  const Clipper& clipper_;
+  Clipper clipper_;
   const GuideRules& rules_;
   const WorkLimit& limit_;
 };
 
-}  // namespace
+SplitGuide::SplitGuide(Judges judges, const std::span<const Geometry>& geometries, const GuideRules& rules,
+                       const WorkLimit& limit) {
+  const auto room = static_cast<size_t>(rules.most_growth * static_cast<double>(judges.size()));
+  root_ = Building(geometries, rules, limit).node(std::move(judges), room, 0);
+}
+
+SplitGuide::~SplitGuide() = default;
+
+std::optional<Reference> SplitGuide::advance(const Waiting& piece, const Clipper& clipper, std::vector<Waiting>& stack,
+                                             GainCurve& curve) const {
+  const Reference& reference = piece.reference;
+  const double most_saved = kMostSaving * half_area(reference.bounds());
+  const Node* node = piece.node;
+  const auto wait = [&](const ClippedBoxes& parts, const Node* below, const Node* above) {
+    if (!parts.above.is_empty()) stack.push_back({with_box(reference, parts.above), above});
+    if (!parts.below.is_empty()) stack.push_back({with_box(reference, parts.below), below});
+  };
+  while (node->plane.exists()) {
+    if (!node->cuts && !(most_saved > node->least_saving)) return reference;
+    const GuidePlane::Side side = node->plane.side_of(reference.bounds(), 1);
+    if (side == GuidePlane::Side::both) {
+      const ClippedBoxes parts = clipper(reference, node->plane.axis, node->plane.position);
+      // Only rounding can leave nothing on either side: keep what we had.
+      if (parts.below.is_empty() && parts.above.is_empty()) return reference;
+      wait(parts, node->below.get(), node->above.get());
+      return std::nullopt;
+    }
+    node = side == GuidePlane::Side::below ? node->below.get() : node->above.get();
+  }
+  const auto cut = worthwhile_cut(reference, clipper, node->least_saving);
+  if (!cut) return reference;
+  curve.add(cut->saved * node->gain_of_saving, cut->saved, cut->has_both() ? 1 : 0);
+  wait(cut->parts, node, node);
+  return std::nullopt;
+}
 
 void GainCurve::add(double gain, double saved, size_t references) {
   const int bucket = std::clamp(static_cast<int>(std::floor(std::log2(gain))) - kFirst, 0, kBuckets - 1);
@@ -201,13 +228,6 @@ void GainCurve::add(const GainCurve& other) {
     buckets[i].references += other.buckets[i].references;
     buckets[i].saved += other.buckets[i].saved;
   }
-}
-
-GuidedPieces guide_splits(std::vector<GuidedReference> references, std::span<const Geometry> geometries,
-                          const Clipper& clipper, const GuideRules& rules, const WorkLimit& limit) {
-  if (references.empty()) return {};
-  const auto room = static_cast<size_t>(rules.most_growth * static_cast<double>(references.size()));
-  return Guide(geometries, clipper, rules, limit).divide(std::move(references), room, 0);
 }
 
 }  // namespace kerf

@@ -1,21 +1,14 @@
 #pragma once
 
 #include <array>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "kerf/base/work_limit.h"
-#include "kerf/references/clipper.h"
+#include "kerf/choose/guide_planes.h"
 
 namespace kerf {
-
-/// A reference on its way through the guide. 48 bytes.
-struct GuidedReference {
-  Reference reference;
-  uint32_t place = 0;  ///< of the whole reference that it is, or is a piece of
-  /// How many references it stands for where planes are judged; 0: it is cut where others say, and has no say itself.
-  float weight = 0;
-  bool is_settled = false;  ///< not to be cut in the middle again: that saves too little of it
-};
 
 /// What cutting saves, by how much each new reference saves: bucket i holds cuts with a gain of 2^(kFirst + i) and
 /// more.
@@ -41,22 +34,50 @@ struct GuideRules {
   /// The half area that one reference may save before it is worth a cut, at a gain of 1: predicted cost of the scene /
   /// references, times the half area of the scene's box.
   double scene_unit = 0;
-  double most_growth = 8;  ///< pieces for each reference, at most, on average
+  double most_growth = 8;  ///< pieces of each judge, at most, on average
 };
 
-/// What came of it.
-struct GuidedPieces {
-  std::vector<std::vector<GuidedReference>> cells;
-  GainCurve curve;  ///< of the cuts in cells
-};
-
-/// Cuts large references where a coarse tree over them would: from the top down each node takes the cheapest of some
-/// planes between references and some through them (Stich, Friedrich, Dietrich: Spatial Splits in Bounding Volume
+/// Where to cut references: a coarse tree over some of them, the judges. From the top down each node takes the cheapest
+/// of some planes between judges and some through them (Stich, Friedrich, Dietrich: Spatial Splits in Bounding Volume
 /// Hierarchies, 2009), as a guide for cutting before a tree is built (Ganestam, Doggett: SAH Guided Spatial Split
-/// Partitioning for Fast BVH Construction, 2016). Planes are judged by the references with a weight alone. In the cells
-/// where the guide ends, what is still large for its cell is cut in the middle of its longest side, as long as that
-/// saves enough. Parallel; the outcome does not depend on the number of threads. Throws Error(stopped).
-GuidedPieces guide_splits(std::vector<GuidedReference> references, std::span<const Geometry> geometries,
-                          const Clipper& clipper, const GuideRules& rules, const WorkLimit& limit);
+/// Partitioning for Fast BVH Construction, 2016). In the cells where it ends, what is still large for its cell is cut
+/// in the middle of its longest side, as long as that saves enough.
+class SplitGuide {
+ public:
+  /// Parallel; the outcome does not depend on the number of threads. Throws Error(stopped).
+  SplitGuide(Judges judges, const std::span<const Geometry>& geometries, const GuideRules& rules,
+             const WorkLimit& limit);
+  ~SplitGuide();
+
+  /// Cuts a reference and hands its pieces to emit(piece), which returns false to stop early; what the cuts in cells
+  /// save is added to `curve`.
+  template <class Emit>
+  void split(const Reference& whole, const Clipper& clipper, GainCurve& curve, Emit&& emit) const {
+    thread_local std::vector<Waiting> stack;
+    stack.assign(1, {whole, root_.get()});
+    while (!stack.empty()) {
+      const Waiting next = stack.back();
+      stack.pop_back();
+      const std::optional<Reference> piece = advance(next, clipper, stack, curve);
+      if (piece && !emit(*piece)) return;
+    }
+  }
+
+ private:
+  struct Node;
+  class Building;
+
+  /// A piece on its way through the guide.
+  struct Waiting {
+    Reference reference;
+    const Node* node;
+  };
+
+  /// Takes a piece down to where it is cut, and its parts wait there; or it is finished.
+  std::optional<Reference> advance(const Waiting& piece, const Clipper& clipper, std::vector<Waiting>& stack,
+                                   GainCurve& curve) const;
+
+  std::unique_ptr<const Node> root_;
+};
 
 }  // namespace kerf

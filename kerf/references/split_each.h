@@ -20,18 +20,20 @@ inline size_t most_references(size_t whole, double cap) {
   return static_cast<size_t>(std::min(static_cast<double>(kMaxReferences), allowed));
 }
 
+/// References that one task splits, one after another.
+inline constexpr size_t kSplitGrain = 1024;
+
 /// Calls split(reference, emit) for each reference, in blocks at once; split calls emit(piece) for each piece, which
 /// returns false to stop early. The pieces in order, or nothing if they are more than `most`. Throws Error(stopped) at
 /// the limit.
 template <class Split>
 std::optional<std::vector<Reference>> split_each(std::span<const Reference> whole, size_t most, const WorkLimit& limit,
                                                  Split&& split) {
-  constexpr size_t kGrain = 1024;
   constexpr size_t kTellEvery = 256;
-  std::vector<std::vector<Reference>> blocks((whole.size() + kGrain - 1) / kGrain);
+  std::vector<std::vector<Reference>> blocks((whole.size() + kSplitGrain - 1) / kSplitGrain);
   std::atomic<size_t> total = 0;
-  parallel_for(whole.size(), kGrain, [&](size_t begin, size_t end) {
-    std::vector<Reference>& out = blocks[begin / kGrain];
+  parallel_for(whole.size(), kSplitGrain, [&](size_t begin, size_t end) {
+    std::vector<Reference>& out = blocks[begin / kSplitGrain];
     size_t told = 0;  // pieces of `out` that `total` knows of
     // Told to the others now and then, or each thread might make as many as all together may.
     const auto tell = [&] {
