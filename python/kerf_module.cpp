@@ -280,7 +280,7 @@ void add_error(py::module_& module) {
 }
 
 constexpr const char* kSceneDoc =
-    "Scene(vertices, faces, structure='binned_sah', threads=0, skip_invalid=False)\n\n"
+    "Scene(vertices, faces, structure='balanced', threads=0, skip_invalid=False)\n\n"
     "Triangles and what finds which of them rays hit. vertices: (n, 3) numbers; faces: (m, 3) integers.\n"
     "float32 vertices and uint32 faces are looked at, not copied, and kept alive: leave them unchanged.\n"
     "Raises Error, a ValueError, for bad input.";
@@ -308,7 +308,7 @@ PYBIND11_MODULE(kerf, module) {
   module.def("menu", menu_list, "All that a structure may name: a list of dicts.");
   py::class_<MeshScene>(module, "Scene", kSceneDoc)
       .def(py::init<const py::object&, const py::object&, const std::string&, int, bool>(), py::arg("vertices"),
-           py::arg("faces"), py::arg("structure") = "binned_sah", py::arg("threads") = 0,
+           py::arg("faces"), py::arg("structure") = kerf::kDefaultStructure, py::arg("threads") = 0,
            py::arg("skip_invalid") = false)
       .def("closest_hit", &MeshScene::closest_hit, py::arg("origins"), py::arg("directions"), py::arg("t_min") = 0.0F,
            py::arg("t_max") = infinity, kClosestDoc)

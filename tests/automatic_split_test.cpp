@@ -13,7 +13,9 @@
 
 #include "kerf/base/error.h"
 #include "kerf/base/parallel.h"
-#include "kerf/choose/slab_bounds.h"
+#include "kerf/build/spatial_bins.h"
+#include "kerf/choose/rough_clip.h"
+#include "kerf/references/middle_cut.h"
 #include "kerf/scene/pipeline.h"
 #include "kerf/scene/scene.h"
 #include "tests/support/error_of.h"
@@ -332,24 +334,41 @@ TEST(AutomaticSplit, FeedsOtherBuilders) {
   EXPECT_GT(split_references(soup.mesh(), AutomaticSplit{}, true).size(), 3299U);
 }
 
-TEST(SlabBounds, AreThoseOfThePartsInEachSlab) {
+TEST(RoughClipper, BoundsTheTwoPartsOfATriangleWithinItsBox) {
   Soup soup;
   soup.add({0, 0, 0}, {4, 4, 0}, {4, 0, 4});
   const Geometry geometry{soup.mesh()};
   const std::span<const Geometry> geometries(&geometry, 1);
-  const Reference whole = make_references(geometries).references[0];
-  const Slabs slabs(whole.bounds(), 0, 4);
-  ASSERT_TRUE(slabs.is_usable());
-  std::array<Box3f, 4> boxes;
-  extend_by_parts(geometries, whole, slabs, 0, 3, boxes.data());
-  for (uint32_t i = 0; i < 4; ++i) {
-    const auto x = static_cast<float>(i);
-    EXPECT_EQ(boxes[i], (Box3f{{x, 0, 0}, {x + 1, x + 1, x + 1}})) << i;
-  }
-  boxes = {};
-  extend_by_parts(geometries, whole, slabs, 1, 2, boxes.data());
-  EXPECT_TRUE(boxes[0].is_empty() && boxes[3].is_empty());
-  EXPECT_EQ(boxes[2], (Box3f{{2, 0, 0}, {3, 3, 3}}));
+  Reference reference = make_references(geometries).references[0];
+  const Clipper clipper = rough_clipper(geometries);
+  ClippedBoxes parts = clipper(reference, 0, 1);
+  EXPECT_EQ(parts.below, (Box3f{{0, 0, 0}, {1, 1, 1}}));
+  EXPECT_EQ(parts.above, (Box3f{{1, 0, 0}, {4, 4, 4}}));
+  reference = with_box(reference, {{0, 0, 0}, {3, 3, 1}});
+  parts = clipper(reference, 0, 2);
+  EXPECT_EQ(parts.below, (Box3f{{0, 0, 0}, {2, 2, 1}}));
+  EXPECT_EQ(parts.above, (Box3f{{2, 0, 0}, {3, 3, 1}}));
+  EXPECT_TRUE(clipper(reference, 0, -1).below.is_empty());
+}
+
+TEST(SpatialPlane, WeightsCountAsSoManyReferences) {
+  // A rod and three times the same pebble at its end, once by its weight and once in full.
+  Soup soup;
+  soup.add({0, 0, 0}, {8, 1, 1}, {8, 0, 1});
+  for (int i = 0; i < 3; ++i) soup.add({7, 0, 0}, {8, 1, 1}, {7.5F, 0, 1});
+  const Geometry geometry{soup.mesh()};
+  const std::span<const Geometry> geometries(&geometry, 1);
+  const std::vector<Reference> all = make_references(geometries).references;
+  const Clipper clipper = geometry_clipper(geometries);
+  const SpatialSlices slices({{0, 0, 0}, {8, 1, 1}}, 8);
+  const SpatialLimits any{100, 100, 1e30};
+  const SpatialPlane full = cheapest_spatial_plane(all, {}, slices, clipper, any);
+  const std::array<float, 2> weights{1, 3};
+  const SpatialPlane weighted = cheapest_spatial_plane(std::span(all).first(2), weights, slices, clipper, any);
+  ASSERT_TRUE(full.is_found());
+  EXPECT_EQ(weighted.cost, full.cost);
+  EXPECT_EQ(weighted.position, full.position);
+  EXPECT_EQ(weighted.above_count, 4);
 }
 
 }  // namespace

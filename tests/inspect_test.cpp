@@ -60,6 +60,7 @@ InspectOptions quick() {
   options.width = 60;
   options.height = 40;
   options.trial = kNoTrial;
+  options.build.structure = "binned_sah";
   return options;
 }
 

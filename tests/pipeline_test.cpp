@@ -59,7 +59,7 @@ TEST(Pipeline, RefusesWithTheColumnAndTheNearestWord) {
             "binned_sah+reinsertion");
   EXPECT_EQ(refusal("binned_sah+bvh2+reinsertion"),
             "structure 'binned_sah+bvh2+reinsertion', column 17: nothing can follow a layout");
-  EXPECT_NE(refusal("zzz").find("expected early_split, refine, binned_sah"), std::string::npos);
+  EXPECT_NE(refusal("zzz").find("expected fast, balanced, best, early_split, refine, binned_sah"), std::string::npos);
 }
 
 TEST(Pipeline, RefusesEveryKindOfMistake) {

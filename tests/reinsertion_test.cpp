@@ -190,7 +190,7 @@ TEST(Reinsertion, CostNeverRisesAndAllInvariantsHold) {
         EXPECT_EQ(find_fault(best, all, 4), std::nullopt) << builder.name << iterations;
         EXPECT_EQ(best.slots.size(), bvh.slots.size());
         EXPECT_LE(sah_cost(best), cost * (1 + 1e-12)) << builder.name << iterations;
-        const double same_leaves = sah_cost(reinserted(bvh, {{"iterations", iterations}, {"leaf", 1}}));
+        const double same_leaves = sah_cost(reinserted(bvh, {{"iterations", iterations}, {"leaf", 1}, {"share", 1}}));
         EXPECT_LE(same_leaves, before * (1 + 1e-12)) << builder.name << iterations;
         before = same_leaves;
       }
@@ -239,7 +239,7 @@ TEST(Reinsertion, KeepsTheDepthBoundOfAChain) {
     const Bvh bvh = chain(xs);
     ASSERT_EQ(measure(bvh).depth, kMaxDepth);
     for (const double iterations : {1, 3, 100}) {
-      const Bvh best = reinserted(bvh, {{"iterations", iterations}, {"leaf", 1}});
+      const Bvh best = reinserted(bvh, {{"iterations", iterations}, {"leaf", 1}, {"share", 1}});
       EXPECT_EQ(find_fault(best, scene_at(xs).geometries(), 1), std::nullopt);
       EXPECT_LE(sah_cost(best), sah_cost(bvh));
     }

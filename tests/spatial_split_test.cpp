@@ -204,7 +204,7 @@ TEST(SpatialBins, CostsOfPlanesWorkedByHand) {
   // Twice the same rod of 8 x 1 x 1: at x = p both sides have two pieces, 2 (2 p + 1) + 2 (2 (8 - p) + 1) = 36.
   const std::vector<Reference> rods{box(0, {0, 0, 0}, {8, 1, 1}), box(1, {0, 0, 0}, {8, 1, 1})};
   const SpatialSlices slices({{0, 0, 0}, {8, 1, 1}}, 4);
-  const SpatialPlane plane = cheapest_spatial_plane(rods, slices, kSolid, {4, 4, 100});
+  const SpatialPlane plane = cheapest_spatial_plane(rods, {}, slices, kSolid, {4, 4, 100});
   ASSERT_TRUE(plane.is_found());
   EXPECT_EQ(plane.cost, 36);
   EXPECT_EQ(plane.axis, 0U);
@@ -213,13 +213,13 @@ TEST(SpatialBins, CostsOfPlanesWorkedByHand) {
   EXPECT_EQ(plane.above_count, 2U);
   EXPECT_EQ(plane.below, (Box3f{{0, 0, 0}, {2, 1, 1}}));
   EXPECT_EQ(plane.above, (Box3f{{2, 0, 0}, {8, 1, 1}}));
-  EXPECT_FALSE(cheapest_spatial_plane(rods, slices, kSolid, {3, 4, 100}).is_found());
-  EXPECT_FALSE(cheapest_spatial_plane(rods, slices, kSolid, {4, 1, 100}).is_found());
-  EXPECT_FALSE(cheapest_spatial_plane(rods, slices, kSolid, {4, 4, 36}).is_found());
+  EXPECT_FALSE(cheapest_spatial_plane(rods, {}, slices, kSolid, {3, 4, 100}).is_found());
+  EXPECT_FALSE(cheapest_spatial_plane(rods, {}, slices, kSolid, {4, 1, 100}).is_found());
+  EXPECT_FALSE(cheapest_spatial_plane(rods, {}, slices, kSolid, {4, 4, 36}).is_found());
   // A cube at the far end draws the plane there: 2 (2 * 6 + 1) + 3 (2 * 2 + 1) = 41 at 6, and at 2 it is 49.
   std::vector<Reference> more = rods;
   more.push_back(box(2, {7, 0, 0}, {8, 1, 1}));
-  const SpatialPlane far = cheapest_spatial_plane(more, slices, kSolid, {5, 5, 100});
+  const SpatialPlane far = cheapest_spatial_plane(more, {}, slices, kSolid, {5, 5, 100});
   EXPECT_EQ(far.cost, 41);
   EXPECT_EQ(far.position, 6);
   EXPECT_EQ(far.below_count, 2U);
@@ -231,8 +231,8 @@ TEST(SpatialBins, ManyReferencesAreBinnedAsFewAre) {
   Box3f bounds;
   for (const Reference& reference : input.references) bounds.extend(reference.bounds());
   const SpatialSlices slices(bounds, 16);
-  const SpatialLimits limits{uint64_t{1} << 40, uint64_t{1} << 40, 1e30};
-  const SpatialPlane plane = cheapest_spatial_plane(input.references, slices, input.clipper(), limits);
+  const SpatialLimits limits{1e12, 1e12, 1e30};
+  const SpatialPlane plane = cheapest_spatial_plane(input.references, {}, slices, input.clipper(), limits);
   ASSERT_TRUE(plane.is_found());
   uint32_t below = 0, above = 0;
   for (const Reference& r : input.references) {

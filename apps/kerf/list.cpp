@@ -58,8 +58,8 @@ nlohmann::ordered_json menu_json() {
 
 void print_menu() {
   fmt::print(
-      "A structure is a pipeline: perhaps a splitter, then a builder, perhaps optimisers and perhaps a layout, or a\n"
-      "structure, joined by '+', such as\n"
+      "A structure is a preset, or a pipeline: perhaps a splitter, then a builder, perhaps optimisers and perhaps a\n"
+      "layout, or a structure, joined by '+', such as\n"
       "  early_split(auto)+binned_sah(bins=32)+reinsertion\n");
   std::string_view kind;
   for (const MenuEntry& entry : menu()) {

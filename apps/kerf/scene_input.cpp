@@ -109,7 +109,7 @@ void add_scene_options(CLI::App& command, SceneArguments& a) {
   command.add_option("input", a.input, "A YAML scene (.yaml) or a model (.ply, .obj, .stl, .glb, .gltf and more)")
       ->required();
   command.add_option("--structure", a.structure,
-                     "How to find what rays hit; see kerf list (default: what the scene says, else binned_sah)");
+                     "How to find what rays hit; see kerf list (default: what the scene says, else balanced)");
   command.add_option("--threads", a.threads, "Threads to use; 0: all")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();

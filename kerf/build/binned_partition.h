@@ -123,6 +123,10 @@ class BinnedSah : public ReferenceOrder {
   BinnedSah(std::vector<Reference> references, uint32_t bins) : ReferenceOrder(std::move(references)), bins_(bins) {}
 
   std::optional<Halves> split(const Subset& subset) {
+    if (subset.count() <= std::min(bins_, FewReferences::kMost)) {
+      const FewReferences division(references(subset));
+      return division.is_divided() ? std::optional(arrange(subset, division)) : std::nullopt;
+    }
     const detail::Slices slices(subset.centers, bins_);
     detail::Bins bins;
     detail::fill_parallel(references(subset), slices, bins);

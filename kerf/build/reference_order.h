@@ -4,6 +4,7 @@
 #include <tuple>
 #include <vector>
 
+#include "kerf/build/few_references.h"
 #include "kerf/build/top_down.h"
 
 namespace kerf {
@@ -67,6 +68,12 @@ class ReferenceOrder {
     halves.left.end = low;
     halves.right.begin = low;
     return halves;
+  }
+
+  /// As few references are best divided; they must be.
+  Halves arrange(const Subset& subset, const FewReferences& division) {
+    division.arrange({references_.data() + subset.begin, subset.count()});
+    return halves_at(subset, subset.begin + division.left());
   }
 
   static void add(Subset& subset, const Reference& reference) {

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numeric>
 
 #include "kerf/base/parallel.h"
 #include "kerf/build/collapse.h"
@@ -105,17 +107,34 @@ class Search {
   std::array<Waiting, kMaxDepth + 2> waiting_;  // one on each level, and both on the last
 };
 
-/// For every node that has a better place, in the tree as it is, the best: those that save most first.
-std::vector<Move> find_moves(const MovableTree& tree, const WorkLimit& limit) {
-  constexpr size_t kGrain = 1024;
+/// The nodes with the largest boxes, `share` of all but the root, in order: where most can be saved. Small trees: all.
+std::vector<uint32_t> largest_nodes(const MovableTree& tree, double share) {
   constexpr uint32_t kFirst = MovableTree::kRoot + 1;
-  const size_t count = tree.end() - kFirst;
-  std::vector<std::vector<Move>> blocks((count + kGrain - 1) / kGrain);
-  parallel_for(count, kGrain, [&](size_t begin, size_t end) {
+  std::vector<uint32_t> nodes(tree.end() - kFirst);
+  std::iota(nodes.begin(), nodes.end(), kFirst);
+  constexpr size_t kFew = 1024;  // hardly cost anything
+  const auto wanted = std::max(kFew, static_cast<size_t>(std::ceil(share * static_cast<double>(nodes.size()))));
+  if (wanted >= nodes.size()) return nodes;
+  std::vector<double> areas(tree.end());
+  parallel_for(nodes.size(), 16384, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) areas[nodes[i]] = half_area(tree[nodes[i]].bounds());
+  });
+  std::nth_element(nodes.begin(), nodes.begin() + static_cast<ptrdiff_t>(wanted), nodes.end(),
+                   [&](uint32_t a, uint32_t b) { return areas[a] != areas[b] ? areas[a] > areas[b] : a < b; });
+  nodes.resize(wanted);
+  std::sort(nodes.begin(), nodes.end());
+  return nodes;
+}
+
+/// For each of these nodes that has a better place, in the tree as it is, the best: those that save most first.
+std::vector<Move> find_moves(const MovableTree& tree, const std::vector<uint32_t>& nodes, const WorkLimit& limit) {
+  constexpr size_t kGrain = 256;
+  std::vector<std::vector<Move>> blocks((nodes.size() + kGrain - 1) / kGrain);
+  parallel_for(nodes.size(), kGrain, [&](size_t begin, size_t end) {
     limit.check();
     Search search(tree);
     for (size_t i = begin; i < end; ++i) {
-      const Move move = search.find(kFirst + static_cast<uint32_t>(i));
+      const Move move = search.find(nodes[i]);
       if (move.target != 0) blocks[begin / kGrain].push_back(move);
     }
   });
@@ -152,7 +171,7 @@ Bvh optimise_reinsertion(Bvh bvh, const OptionValues& options, const WorkLimit& 
   std::vector<BvhNode>().swap(bvh.nodes);
   const auto iterations = static_cast<uint32_t>(options["iterations"]);
   for (uint32_t i = 0; i < iterations; ++i) {
-    if (!make_moves(tree, find_moves(tree, limit), limit)) break;
+    if (!make_moves(tree, find_moves(tree, largest_nodes(tree, options["share"]), limit), limit)) break;
   }
   limit.check();
   const LeafRule rule{static_cast<uint32_t>(options["leaf"]), options["inner_cost"], options["primitive_cost"]};

@@ -12,6 +12,7 @@ class SpatialOrder : public ReferenceOrder {
   /// With room for `room` references, at least as many as there are.
   SpatialOrder(std::vector<Reference> references, size_t room);
 
+  using ReferenceOrder::arrange;
   using ReferenceOrder::partition;
   using ReferenceOrder::references;
   Subset whole() const { return whole_; }

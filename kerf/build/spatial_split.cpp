@@ -12,6 +12,47 @@ struct SpatialSplitOptions {
   double overlap, favour;
 };
 
+/// The best division of whole references, as BinnedSah finds it.
+class WholeDivision {
+ public:
+  WholeDivision(std::span<const Reference> references, const Subset& subset, uint32_t bin_count)
+      : slices_(subset.centers, bin_count) {
+    Box3f left, right;
+    if (subset.count() <= std::min(bin_count, FewReferences::kMost)) {
+      few_.emplace(references);
+      cost_ = few_->cost();
+      left = few_->left_bounds();
+      right = few_->right_bounds();
+    } else {
+      detail::Bins bins;
+      detail::fill_parallel(references, slices_, bins);
+      plane_ = detail::cheapest_plane(bins, slices_);
+      cost_ = plane_.cost;
+      for (uint32_t i = 0; is_found() && i < bin_count; ++i) {
+        (i < plane_.bin ? left : right).extend(bins[plane_.axis][i].box());
+      }
+    }
+    overlap_ = half_area(is_found() ? intersected(left, right) : subset.bounds);
+  }
+
+  bool is_found() const { return !std::isinf(cost_); }
+  double cost() const { return cost_; }
+  /// Half the area of what the boxes on both sides have in common; without a division, of the whole.
+  double overlap() const { return overlap_; }
+
+  Halves apply(SpatialOrder& order, const Subset& subset) const {
+    if (!is_found()) return order.halve(subset);
+    if (few_) return order.arrange(subset, *few_);
+    return order.partition(subset, [&](const Reference& r) { return slices_(r, plane_.axis) < plane_.bin; });
+  }
+
+ private:
+  detail::Slices slices_;
+  detail::Plane plane_;
+  std::optional<FewReferences> few_;
+  double cost_ = 0, overlap_ = 0;
+};
+
 /// At each node the cheaper of the best division of whole references and the best plane to cut at (Stich, Friedrich,
 /// Dietrich: Spatial Splits in Bounding Volume Hierarchies, 2009). Not of the paper: the room that each node has for
 /// pieces, and that cuts are favoured.
@@ -28,35 +69,19 @@ class SpatialSplit {
   std::optional<Halves> divide(const Subset& subset, uint32_t depth) {
     if (subset.count() == 1 || depth == shared_.max_depth) return std::nullopt;
     const uint64_t most = detail::capacity(shared_.leaf_size, shared_.max_depth - depth - 1);
-    const detail::Slices slices(subset.centers, own_.bins);
-    detail::Bins bins;
-    detail::fill_parallel(order_.references(subset), slices, bins);
-    const detail::Plane object = detail::cheapest_plane(bins, slices);
-    const SpatialPlane spatial = overlap(bins, slices, object, subset) > least_overlap_
-                                     ? find_spatial(subset, object.cost, most)
-                                     : SpatialPlane{};
-    const double cost = spatial.is_found() ? spatial.cost : object.cost;
+    const WholeDivision whole(order_.references(subset), subset, own_.bins);
+    const SpatialPlane spatial =
+        whole.overlap() > least_overlap_ ? find_spatial(subset, whole.cost(), most) : SpatialPlane{};
+    const double cost = spatial.is_found() ? spatial.cost : whole.cost();
     if (subset.count() <= shared_.leaf_size && (std::isinf(cost) || detail::leaf_is_cheaper(subset, cost, shared_))) {
       return std::nullopt;
     }
-    Halves halves =
-        spatial.is_found() ? order_.cut(subset, spatial, clipper_) : divide_whole(subset, slices, object, most);
+    Halves halves = spatial.is_found() ? order_.cut(subset, spatial, clipper_) : divide_whole(subset, whole, most);
     order_.make_room(subset, halves);
     return halves;
   }
 
  private:
-  /// Half the area of what the boxes on both sides of an object split have in common; without one, of the whole.
-  static double overlap(const detail::Bins& bins, const detail::Slices& slices, const detail::Plane& plane,
-                        const Subset& subset) {
-    if (std::isinf(plane.cost)) return half_area(subset.bounds);
-    detail::Bin left, right;
-    left.clear();
-    right.clear();
-    for (uint32_t i = 0; i < slices.bins; ++i) (i < plane.bin ? left : right).add(bins[plane.axis][i]);
-    return half_area(intersected(left.box(), right.box()));
-  }
-
   /// A plane to cut at, not much dearer than the best object split, and cheaper than a leaf. Areas times counts take a
   /// half for a leaf: they overrate what more references cost in a tree, and do not see what overlap costs further
   /// down.
@@ -72,11 +97,9 @@ class SpatialSplit {
                                   {static_cast<double>(subset.room()), static_cast<double>(most), cost});
   }
 
-  Halves divide_whole(const Subset& subset, const detail::Slices& slices, const detail::Plane& plane, uint64_t most) {
+  Halves divide_whole(const Subset& subset, const WholeDivision& whole, uint64_t most) {
     // Where no plane divides, or a lopsided one would break the depth bound further down: equal counts keep it.
-    if (std::isinf(plane.cost)) return order_.halve(subset);
-    const Halves halves =
-        order_.partition(subset, [&](const Reference& r) { return slices(r, plane.axis) < plane.bin; });
+    const Halves halves = whole.apply(order_, subset);
     return std::max(halves.left.count(), halves.right.count()) <= most ? halves : order_.halve(subset);
   }
 

@@ -152,7 +152,8 @@ class Attempts {
     std::vector<GainCurve> curves((input_.whole.size() + kSplitGrain - 1) / kSplitGrain);
     auto pieces = split_each(input_.whole, most_, input_.limit, [&](const Reference& reference, const auto& emit) {
       if (half_area(reference.bounds()) < areas_.candidate) return static_cast<void>(emit(reference));
-      guide.split(reference, input_.clipper, curves[static_cast<size_t>(&reference - input_.whole.data()) / kSplitGrain], emit);
+      guide.split(reference, input_.clipper,
+                  curves[static_cast<size_t>(&reference - input_.whole.data()) / kSplitGrain], emit);
     });
     if (!pieces) return std::nullopt;
     GuidedPieces guided{std::move(*pieces), {}};

@@ -67,10 +67,8 @@ GuidePlane::Side GuidePlane::side_of(const Box3f& reference, double weight) cons
   if (!(lower < position)) return Side::above;
   const double below_area = half_area(below), above_area = half_area(above);
   const double both = below_area * below_weight + above_area * above_weight;
-  const double only_below =
-      half_area(united(below, reference)) * below_weight + above_area * (above_weight - weight);
-  const double only_above =
-      below_area * (below_weight - weight) + half_area(united(above, reference)) * above_weight;
+  const double only_below = half_area(united(below, reference)) * below_weight + above_area * (above_weight - weight);
+  const double only_above = below_area * (below_weight - weight) + half_area(united(above, reference)) * above_weight;
   if (std::min(only_below, only_above) > both + toll * weight) return Side::both;
   return only_below <= only_above ? Side::below : Side::above;
 }

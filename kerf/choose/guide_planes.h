@@ -38,8 +38,8 @@ struct GuidePlane {
   enum class Side : uint8_t { below, above, both };
 
   double cost = std::numeric_limits<double>::infinity();  ///< half area times references, both sides added
-  double toll = 0;             ///< of the same kind, for each reference more: what a cut must save in any case
-  bool cuts = false;           ///< goes through references; else it divides them by their centres
+  double toll = 0;    ///< of the same kind, for each reference more: what a cut must save in any case
+  bool cuts = false;  ///< goes through references; else it divides them by their centres
   uint32_t axis = 0;
   float position = 0;          ///< of one that cuts
   uint32_t bin = 0;            ///< of one that does not: the first bin of centres above it
@@ -48,8 +48,8 @@ struct GuidePlane {
   double below_weight = 0, above_weight = 0;
 
   bool exists() const { return cost < std::numeric_limits<double>::infinity(); }
-  /// Where the box of a reference belongs. One across a plane that cuts belongs to both sides, or whole to one where that is
-  /// cheaper (Stich et al. 2009, section 4.4, with the sides as they were judged).
+  /// Where the box of a reference belongs. One across a plane that cuts belongs to both sides, or whole to one where
+  /// that is cheaper (Stich et al. 2009, section 4.4, with the sides as they were judged).
   Side side_of(const Box3f& reference, double weight) const;
 };
 

@@ -171,7 +171,8 @@ class SplitGuide::Building {
         count += cut->has_both() ? weight : 0;
         // Parts that wait behind the others get their turn in this round, too.
         if (cut->has_both()) judges.add(with_box(judges.references[i], cut->parts.above), weight);
-        judges.references[i] = with_box(judges.references[i], united(cut->parts.below, cut->has_both() ? Box3f{} : cut->parts.above));
+        judges.references[i] =
+            with_box(judges.references[i], united(cut->parts.below, cut->has_both() ? Box3f{} : cut->parts.above));
       }
     }
   }

@@ -16,6 +16,9 @@ MenuEntry make_entry(std::string_view kind, const Entry& entry) {
 
 std::vector<MenuEntry> joined() {
   std::vector<MenuEntry> all;
+  for (const PresetEntry& entry : presets()) {
+    all.push_back({"preset", entry.name, entry.sentence, entry.pipeline, {}, &entry});
+  }
   for (const SplitterEntry& entry : splitters()) all.push_back(make_entry("splitter", entry));
   for (const BuilderEntry& entry : builders()) all.push_back(make_entry("builder", entry));
   for (const OptimiserEntry& entry : optimisers()) all.push_back(make_entry("optimiser", entry));

@@ -7,18 +7,19 @@
 #include "kerf/build/builders.h"
 #include "kerf/build/optimisers.h"
 #include "kerf/choose/splitters.h"
+#include "kerf/scene/presets.h"
 #include "kerf/scene/structure.h"
 
 namespace kerf {
 
 /// One word of a pipeline.
 struct MenuEntry {
-  std::string_view kind;  ///< "splitter", "builder", "optimiser", "layout" or "structure"
+  std::string_view kind;  ///< "preset", "splitter", "builder", "optimiser", "layout" or "structure"
   std::string_view name;
   std::string_view sentence;  ///< what it does
   std::string_view source;    ///< the paper, empty where there is none
   std::span<const OptionSpec> options;
-  std::variant<const SplitterEntry*, const BuilderEntry*, const OptimiserEntry*, const LayoutEntry*,
+  std::variant<const PresetEntry*, const SplitterEntry*, const BuilderEntry*, const OptimiserEntry*, const LayoutEntry*,
                const StructureEntry*>
       entry;
 

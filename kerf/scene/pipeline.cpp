@@ -20,7 +20,7 @@ class Parser {
   Pipeline parse() {
     Pipeline pipeline;
     while (true) {
-      pipeline.stages.push_back(parse_stage());
+      add_stage(pipeline);
       skip_spaces();
       if (at_ == text_.size()) break;
       if (!take('+')) fail("expected '+', '(' or the end, not '" + std::string(1, text_[at_]) + "'");
@@ -53,11 +53,23 @@ class Parser {
     return text_.substr(begin, at_ - begin);
   }
 
+  /// A preset is all the stages that it stands for.
+  void add_stage(Pipeline& pipeline) {
+    const Stage stage = parse_stage();
+    const auto* preset = std::get_if<const PresetEntry*>(&stage.entry->entry);
+    if (preset == nullptr) {
+      pipeline.stages.push_back(stage);
+      return;
+    }
+    for (const Stage& meant : Parser((*preset)->pipeline).parse().stages) pipeline.stages.push_back(meant);
+    starts_.resize(pipeline.stages.size(), starts_.back());
+  }
+
   Stage parse_stage() {
     skip_spaces();
     const size_t begin = at_;
     starts_.push_back(begin);
-    const std::string_view name = parse_name("the name of a splitter, builder, optimiser, layout or structure");
+    const std::string_view name = parse_name("the name of a preset, splitter, builder, optimiser, layout or structure");
     const std::span<const MenuEntry> all = menu();
     const auto found = std::find_if(all.begin(), all.end(), [&](const MenuEntry& entry) { return entry.name == name; });
     if (found == all.end()) fail_at(begin, unknown(name));

@@ -10,6 +10,7 @@
 #include "kerf/geometry/hit.h"
 #include "kerf/geometry/ray.h"
 #include "kerf/references/split_result.h"
+#include "kerf/scene/presets.h"
 #include "kerf/scene/structure.h"
 #include "kerf/trace/trace_table.h"
 
@@ -17,10 +18,10 @@ namespace kerf {
 
 /// How Scene::build() works.
 struct BuildOptions {
-  /// The pipeline: perhaps a splitter, then a builder,
+  /// A preset, or a pipeline: perhaps a splitter, then a builder,
   /// perhaps optimisers and perhaps a layout, or a structure,
   /// joined by '+', options in parentheses; see menu().
-  std::string structure = "binned_sah";
+  std::string structure{kDefaultStructure};
   int threads = 0;            ///< 0: as many as the caller's arena has
   bool skip_invalid = false;  ///< drop primitives that are not finite or have a bad index, instead of an error
   WorkLimit limit = {};       ///< when to give up
@@ -54,7 +55,7 @@ struct BuildReport {
 ///
 ///     kerf::Scene scene;
 ///     scene.add(kerf::TriangleMesh{vertices, triangles});
-///     scene.build({.structure = "early_split(auto)+binned_sah"});
+///     scene.build();
 ///     kerf::Hit hit = scene.closest_hit({.origin = {0, 0, 5}, .direction = {0, 0, -1}});
 ///
 /// The scene looks at the caller's memory and copies none of it: vertices and indices must stay unchanged until the

@@ -122,7 +122,8 @@ def test_json_says_what_was_done():
     assert len(scene["tree_hash"]) == 16
     plain = json.loads(kerf("render", "square.ply", "-o", "a.png", *QUICK, "--json", "-", "--quiet").stdout)
     assert plain["view"] == "beauty" and plain["samples"] == 2 and plain["paths"] == 16 * 12 * 2 <= plain["rays"]
-    assert plain["scene"]["sa_max"] == "inf" and plain["scene"]["references"] == 4, "the square and two lights"
+    assert plain["scene"]["sa_max"] == "auto" and plain["scene"]["references"] == 4, "the square and two lights"
+    assert plain["scene"]["structure"].startswith("early_split(sa_max=auto)+binned_sah+reinsertion"), "balanced"
 
 
 def test_docs_name_every_structure():
@@ -135,7 +136,7 @@ def test_docs_name_every_structure():
 def test_list_names_every_entry():
     menu = json.loads(kerf("list", "--json", "-").stdout)
     names = [entry["name"] for entry in menu]
-    assert {entry["kind"] for entry in menu} == {"splitter", "builder", "optimiser", "layout", "structure", "view", "material", "model", "format"}
+    assert {entry["kind"] for entry in menu} == {"preset", "splitter", "builder", "optimiser", "layout", "structure", "view", "material", "model", "format"}
     assert kerf("list", "--quiet", "--threads", "2").returncode == 0
     for name in ["early_split", "spatial_median", "object_median", "sweep_sah", "binned_sah", "brute_force", "beauty",
                  "glass", ".obj"]:
@@ -337,7 +338,8 @@ def test_compare_says_what_rays_cost_in_both_structures():
     result = kerf("render", "square.ply", *QUICK, "--compare", "spatial_median", "--json", "-")
     assert result.returncode == 0, result.stderr
     plain, own = json.loads(result.stdout)["comparison"]
-    assert (plain["structure"], own["structure"]) == ("spatial_median", "binned_sah")
+    assert plain["structure"] == "spatial_median"
+    assert own["structure"].startswith("early_split(sa_max=auto)+binned_sah+reinsertion"), "balanced, by default"
     for cost in (plain, own):
         assert cost["rays"] > 30000 and cost["nodes_per_ray"] > 0.1 and cost["nanoseconds_per_ray"] > 1
     assert "times as fast" in result.stderr and "spatial_median: " in result.stderr

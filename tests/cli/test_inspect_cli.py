@@ -13,7 +13,7 @@ VERTICES = [(x, y, 0) for y in range(SIDE + 1) for x in range(SIDE + 1)] + [(0, 
 CELLS = [y * (SIDE + 1) + x for y in range(SIDE) for x in range(SIDE)]
 FACES = [f for c in CELLS for f in ((c, c + 1, c + SIDE + 1), (c + 1, c + SIDE + 2, c + SIDE + 1))]
 FACES.append((len(VERTICES) - 3, len(VERTICES) - 2, len(VERTICES) - 1))
-QUICK = ["--size", "40x40", "--eye", "10,10,30", "--look-at", "10,10,0"]
+QUICK = ["--size", "40x40", "--eye", "10,10,30", "--look-at", "10,10,0", "--structure", "binned_sah"]
 
 
 @pytest.fixture(autouse=True)

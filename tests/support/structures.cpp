@@ -38,9 +38,9 @@ std::vector<std::string> pipelines(Extent extent) {
     const bool is_structure = entry.kind == "builder" || entry.kind == "structure";
     const std::string before = entry.takes_tree() ? "binned_sah+" : "";
     if (entry.kind == "splitter") all.push_back(splitting_text(name) + "+binned_sah");
-    if (is_structure) all.push_back(name);
+    if (is_structure || entry.kind == "preset") all.push_back(name);
     if (entry.takes_tree()) all.push_back(before + splitting_text(name));
-    if (extent == Extent::menu || entry.kind == "splitter") continue;
+    if (extent == Extent::menu || entry.kind == "splitter" || entry.kind == "preset") continue;
     for (const std::string& variant : variants(entry)) all.push_back(before + variant);
     const auto* structure = std::get_if<const StructureEntry*>(&entry.entry);
     if (structure != nullptr && (*structure)->takes_pieces) all.push_back(early + name);
