@@ -25,7 +25,7 @@ class FewReferences {
   bool is_divided() const { return left_ > 0; }
   /// How many come first.
   uint32_t left() const { return left_; }
-  /// The box of those that come first, and of the others.
+  /// The box of those that come first, and of the others, where they are divided.
   Box3f left_bounds() const { return bounds(0, left_); }
   Box3f right_bounds() const { return bounds(left_, references_.size()); }
   /// All of them, those that come first in front. `out` may be where they stand.
@@ -79,7 +79,7 @@ class FewReferences {
   std::span<const Reference> references_;
   double cost_ = std::numeric_limits<double>::infinity();
   uint32_t left_ = 0;
-  Order best_;
+  Order best_{};
 };
 
 }  // namespace kerf

@@ -21,8 +21,8 @@ class WholeDivision {
     if (subset.count() <= std::min(bin_count, FewReferences::kMost)) {
       few_.emplace(references);
       cost_ = few_->cost();
-      left = few_->left_bounds();
-      right = few_->right_bounds();
+      if (is_found()) left = few_->left_bounds();
+      if (is_found()) right = few_->right_bounds();
     } else {
       detail::Bins bins;
       detail::fill_parallel(references, slices_, bins);
