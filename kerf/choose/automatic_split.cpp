@@ -26,7 +26,7 @@ constexpr size_t kCandidateShare = 2;  // of so many the largest may be cut
 constexpr size_t kThresholdProbes = 65536;
 constexpr size_t kGrain = 16384;
 // Where the pieces pass the cap, twice the gain is asked for until they fit, then less again in a few steps.
-constexpr double kPlaneGain = 0.02, kStrictest = 0x1p30;
+constexpr double kPlaneGain = 2, kStrictest = 0x1p30;
 constexpr int kSteps = 5;
 
 /// The boxes of a scene as a whole.
@@ -143,11 +143,9 @@ class Attempts {
 
   /// The pieces for `strictness` times the gain; nothing if they are too many.
   std::optional<GuidedPieces> at(double strictness) {
-    // What the whole scene gains goes first: it is what few references are best spent on.
-    const double more = strictness * strictness * strictness;
-    rules_.cell_gain = GuideRules{}.cell_gain * more;
+    rules_.cell_gain = GuideRules{}.cell_gain * strictness;
     rules_.scene_gain = GuideRules{}.scene_gain * strictness;
-    rules_.plane_gain = kPlaneGain * (more - 1);
+    rules_.plane_gain = kPlaneGain * (strictness - 1);
     const SplitGuide guide(judges_, input_.geometries, rules_, input_.limit);
     std::vector<GainCurve> curves((input_.whole.size() + kSplitGrain - 1) / kSplitGrain);
     auto pieces = split_each(input_.whole, most_, input_.limit, [&](const Reference& reference, const auto& emit) {

@@ -18,10 +18,17 @@ constexpr size_t kParallel = 1024;    // judges that are worth a task
 /// Planes through references are tried where the children of the best plane between them overlap by this share of the
 /// node's area.
 constexpr double kLeastOverlap = 0.01;
-/// A cut in the middle must save this share of a box's area. A right triangle in an axis-aligned plane saves a quarter,
-/// whatever its size: it fills a flat box, in which nothing else lies.
+/// A cut in the middle of a flat box must save this share of its area. A right triangle in an axis-aligned plane saves
+/// a quarter, whatever its size, and nothing else lies in its box: so walls and floors of most buildings are left
+/// alone.
 constexpr double kLeastSaving = 0.3;
+constexpr double kFlat = 0.95;        // share of half the area that the largest side of a flat box has
 constexpr double kMostSaving = 0.75;  // hardly any cut saves more, so what has less than it should save is not tried
+
+bool is_flat(const Box3f& box) {
+  const Vec3d e = to_double(box.upper) - to_double(box.lower);
+  return std::max({e.x * e.y, e.y * e.z, e.z * e.x}) > kFlat * half_area(box);
+}
 
 /// What a cut in the middle saves of a piece's half area; nothing if it is not worth it.
 struct MiddleCut {
@@ -37,7 +44,7 @@ std::optional<MiddleCut> worthwhile_cut(const Reference& reference, const Clippe
   const auto parts = cut_in_the_middle(reference, clipper);
   if (!parts) return std::nullopt;
   const double saved = before - half_area(parts->below) - half_area(parts->above);
-  if (saved < kLeastSaving * before || !(saved > least)) return std::nullopt;
+  if (!(saved > least) || (saved < kLeastSaving * before && is_flat(reference.bounds()))) return std::nullopt;
   return MiddleCut{*parts, saved};
 }
 

@@ -28,7 +28,7 @@ struct GainCurve {
 struct GuideRules {
   /// A cut within a cell must save this share of the predicted cost for each share of references that it adds: gains
   /// below are not worth the memory. Of the cell's own cost, and of the whole scene's; one of them is enough.
-  double cell_gain = 0.4, scene_gain = 0.25;
+  double cell_gain = 2, scene_gain = 0.25;
   /// A plane through references must save this share of the node's cost for each share of references that it adds.
   double plane_gain = 0;
   /// The half area that one reference may save before it is worth a cut, at a gain of 1: predicted cost of the scene /
