@@ -21,7 +21,7 @@ namespace {
 
 constexpr size_t kSamples = 4096;      // of small references, that judge planes with all large ones; if that is more:
 constexpr size_t kSampleShare = 64;    // one of so many
-constexpr size_t kOthers = 65536;      // about twice as many, at most, show how far a cell reaches
+constexpr size_t kOthers = 8192;       // about twice as many, at most, show how far a cell reaches
 constexpr size_t kCandidateShare = 2;  // of so many the largest may be cut
 constexpr size_t kThresholdProbes = 65536;
 constexpr size_t kGrain = 16384;
