@@ -13,32 +13,17 @@
 
 #include "kerf/base/error.h"
 #include "kerf/base/parallel.h"
-#include "kerf/build/spatial_bins.h"
-#include "kerf/choose/rough_clip.h"
-#include "kerf/references/middle_cut.h"
 #include "kerf/scene/pipeline.h"
 #include "kerf/scene/scene.h"
 #include "tests/support/error_of.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
+#include "tests/support/soup.h"
 
 namespace kerf::test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-/// Triangles that share no vertices.
-struct Soup {
-  std::vector<Vec3f> vertices;
-  std::vector<TriangleCorners> triangles;
-
-  void add(Vec3f a, Vec3f b, Vec3f c) {
-    const auto first = static_cast<uint32_t>(vertices.size());
-    vertices.insert(vertices.end(), {a, b, c});
-    triangles.push_back({first, first + 1, first + 2});
-  }
-  TriangleMesh mesh() const { return {{vertices.data(), vertices.size()}, {triangles.data(), triangles.size()}}; }
-};
 
 /// Long thin triangles in all directions, among many small ones.
 Soup needles_in_hay(size_t needles, size_t straws, uint64_t seed, float scale = 1, uint32_t turn = 0) {
@@ -332,43 +317,6 @@ TEST(AutomaticSplit, FeedsOtherBuilders) {
   soup.vertices[7].y = std::nanf("");
   error_of(ErrorCode::invalid_geometry, [&] { split_references(soup.mesh(), AutomaticSplit{}); });
   EXPECT_GT(split_references(soup.mesh(), AutomaticSplit{}, true).size(), 3299U);
-}
-
-TEST(RoughClipper, BoundsTheTwoPartsOfATriangleWithinItsBox) {
-  Soup soup;
-  soup.add({0, 0, 0}, {4, 4, 0}, {4, 0, 4});
-  const Geometry geometry{soup.mesh()};
-  const std::span<const Geometry> geometries(&geometry, 1);
-  Reference reference = make_references(geometries).references[0];
-  const Clipper clipper = rough_clipper(geometries);
-  ClippedBoxes parts = clipper(reference, 0, 1);
-  EXPECT_EQ(parts.below, (Box3f{{0, 0, 0}, {1, 1, 1}}));
-  EXPECT_EQ(parts.above, (Box3f{{1, 0, 0}, {4, 4, 4}}));
-  reference = with_box(reference, {{0, 0, 0}, {3, 3, 1}});
-  parts = clipper(reference, 0, 2);
-  EXPECT_EQ(parts.below, (Box3f{{0, 0, 0}, {2, 2, 1}}));
-  EXPECT_EQ(parts.above, (Box3f{{2, 0, 0}, {3, 3, 1}}));
-  EXPECT_TRUE(clipper(reference, 0, -1).below.is_empty());
-}
-
-TEST(SpatialPlane, WeightsCountAsSoManyReferences) {
-  // A rod and three times the same pebble at its end, once by its weight and once in full.
-  Soup soup;
-  soup.add({0, 0, 0}, {8, 1, 1}, {8, 0, 1});
-  for (int i = 0; i < 3; ++i) soup.add({7, 0, 0}, {8, 1, 1}, {7.5F, 0, 1});
-  const Geometry geometry{soup.mesh()};
-  const std::span<const Geometry> geometries(&geometry, 1);
-  const std::vector<Reference> all = make_references(geometries).references;
-  const Clipper clipper = geometry_clipper(geometries);
-  const SpatialSlices slices({{0, 0, 0}, {8, 1, 1}}, 8);
-  const SpatialLimits any{100, 100, 1e30};
-  const SpatialPlane full = cheapest_spatial_plane(all, {}, slices, clipper, any);
-  const std::array<float, 2> weights{1, 3};
-  const SpatialPlane weighted = cheapest_spatial_plane(std::span(all).first(2), weights, slices, clipper, any);
-  ASSERT_TRUE(full.is_found());
-  EXPECT_EQ(weighted.cost, full.cost);
-  EXPECT_EQ(weighted.position, full.position);
-  EXPECT_EQ(weighted.above_count, 4);
 }
 
 }  // namespace

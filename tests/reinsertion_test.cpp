@@ -229,6 +229,18 @@ TEST(Reinsertion, SameTreeForAnyNumberOfThreads) {
   EXPECT_EQ(hash_with(7), one);
 }
 
+TEST(Reinsertion, MostIsSavedAtTheLargestNodes) {
+  const RandomTriangles scene(20000);
+  const Geometry geometry = scene.geometry();
+  const Bvh bvh = built(builders()[0], {&geometry, 1}, false);
+  const double before = sah_cost(reinserted(bvh, {{"iterations", 0}}));
+  const auto saved = [&](double share) {
+    return before - sah_cost(reinserted(bvh, {{"iterations", 1}, {"share", share}}));
+  };
+  EXPECT_GT(saved(0.1), 0.3 * saved(1));
+  EXPECT_GT(saved(0.1), 0);
+}
+
 TEST(Reinsertion, KeepsTheDepthBoundOfAChain) {
   std::vector<float> random, sorted;
   for (uint32_t i = 0; i <= kMaxDepth; ++i) {
