@@ -1,0 +1,127 @@
+#include "kerf/geometry/fragment.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace kerf {
+namespace {
+
+/// A flat primitive as origin + s * along_s + t * along_t.
+struct Frame {
+  Vec3d origin, along_s, along_t;
+  bool is_triangle = true;  ///< s + t <= 1
+
+  Vec3d at(double s, double t) const { return origin + along_s * s + along_t * t; }
+  /// The size of the numbers that make a coordinate.
+  Vec3d size() const { return abs(origin) + abs(along_s) + abs(along_t); }
+};
+
+/// Nothing for a sphere.
+std::optional<Frame> frame_of(const Geometry& geometry, uint32_t primitive) {
+  if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) {
+    const Triangle t = mesh->triangle(primitive);
+    const Vec3d a = to_double(t.a);
+    return Frame{a, to_double(t.b) - a, to_double(t.c) - a, true};
+  }
+  if (const auto* shapes = std::get_if<Strided<Parallelogram>>(&geometry.shapes)) {
+    const Parallelogram p = (*shapes)[primitive];
+    return Frame{to_double(cleaned(p.corner)), to_double(p.u), to_double(p.v), false};
+  }
+  return std::nullopt;
+}
+
+struct Corner {
+  double s, t;
+};
+
+/// A polygon in s and t.
+struct Polygon {
+  std::array<Corner, kMaxFragmentCorners> corners;
+  size_t size = 0;
+  bool overflowed = false;
+
+  void push(Corner corner) {
+    overflowed = overflowed || size == corners.size();
+    if (!overflowed) corners[size++] = corner;
+  }
+};
+
+/// A plane as a function of s and t: what lies inside is not below 0.
+struct Side {
+  double base, by_s, by_t;
+
+  double operator()(Corner c) const { return base + by_s * c.s + by_t * c.t; }
+};
+
+/// Cuts off what lies outside (Sutherland and Hodgman 1974, one plane) and says whether anything did.
+bool keep_inside(Polygon& polygon, const Side& side) {
+  std::array<double, kMaxFragmentCorners> value;
+  bool all_inside = true;
+  for (size_t i = 0; i < polygon.size; ++i) {
+    value[i] = side(polygon.corners[i]);
+    all_inside = all_inside && value[i] >= 0;
+  }
+  if (all_inside) return false;
+  Polygon kept;
+  kept.overflowed = polygon.overflowed;
+  for (size_t i = 0; i < polygon.size; ++i) {
+    const size_t next = i + 1 == polygon.size ? 0 : i + 1;
+    const Corner p = polygon.corners[i], q = polygon.corners[next];
+    if (value[i] >= 0) kept.push(p);
+    if ((value[i] > 0 && value[next] < 0) || (value[i] < 0 && value[next] > 0)) {
+      const double share = value[i] / (value[i] - value[next]);
+      kept.push({p.s + (q.s - p.s) * share, p.t + (q.t - p.t) * share});
+    }
+  }
+  polygon = kept;
+  return true;
+}
+
+constexpr double kCutSlack = 0x1p-44;     ///< of the coordinates' size: how far outside the cell cuts are made
+constexpr double kCornerError = 0x1p-24;  ///< of a stored corner, in s and in t
+constexpr double kRounding = 0x1p-49;     ///< of a coordinate made from s and t, of the coordinates' size
+
+}  // namespace
+
+size_t cut_fragment(const Geometry& geometry, uint32_t primitive, const Box3f& cell,
+                    std::span<FragmentCorner, kMaxFragmentCorners> corners) {
+  const std::optional<Frame> frame = frame_of(geometry, primitive);
+  if (!frame) return 0;
+  Polygon polygon;
+  polygon.push({0, 0});
+  polygon.push({1, 0});
+  if (!frame->is_triangle) polygon.push({1, 1});
+  polygon.push({0, 1});
+  const Vec3d slack = kCutSlack * frame->size();
+  bool is_cut = false;
+  for (uint32_t axis = 0; axis < 3; ++axis) {
+    const double origin = frame->origin[axis], by_s = frame->along_s[axis], by_t = frame->along_t[axis];
+    const Side above_lower{origin - (cell.lower[axis] - slack[axis]), by_s, by_t};
+    const Side below_upper{cell.upper[axis] + slack[axis] - origin, -by_s, -by_t};
+    is_cut = keep_inside(polygon, above_lower) || is_cut;
+    is_cut = keep_inside(polygon, below_upper) || is_cut;
+  }
+  if (!is_cut || polygon.overflowed) return 0;
+  for (size_t i = 0; i < polygon.size; ++i) {
+    corners[i] = {static_cast<float>(polygon.corners[i].s), static_cast<float>(polygon.corners[i].t)};
+  }
+  return polygon.size;
+}
+
+Box3f fragment_bounds(const Geometry& geometry, uint32_t primitive, std::span<const FragmentCorner> corners) {
+  const Box3f whole = primitive_bounds(geometry, primitive);
+  const std::optional<Frame> frame = corners.empty() ? std::nullopt : frame_of(geometry, primitive);
+  if (!frame) return whole;
+  Vec3d lower = frame->at(corners[0].s, corners[0].t), upper = lower;
+  for (const FragmentCorner& corner : corners.subspan(1)) {
+    const Vec3d p = frame->at(corner.s, corner.t);
+    lower = min(lower, p);
+    upper = max(upper, p);
+  }
+  const Vec3d slack = kCornerError * (abs(frame->along_s) + abs(frame->along_t)) + kRounding * frame->size();
+  return intersected(outward(lower - slack, upper + slack), whole);
+}
+
+}  // namespace kerf
