@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+
+#include "kerf/geometry/ray_sphere.h"
 
 namespace kerf {
 namespace {
@@ -18,18 +19,15 @@ struct Frame {
   Vec3d size() const { return abs(origin) + abs(along_s) + abs(along_t); }
 };
 
-/// Nothing for a sphere.
-std::optional<Frame> frame_of(const Geometry& geometry, uint32_t primitive) {
+/// Of a triangle or parallelogram.
+Frame frame_of(const Geometry& geometry, uint32_t primitive) {
   if (const auto* mesh = std::get_if<TriangleMesh>(&geometry.shapes)) {
     const Triangle t = mesh->triangle(primitive);
     const Vec3d a = to_double(t.a);
-    return Frame{a, to_double(t.b) - a, to_double(t.c) - a, true};
+    return {a, to_double(t.b) - a, to_double(t.c) - a, true};
   }
-  if (const auto* shapes = std::get_if<Strided<Parallelogram>>(&geometry.shapes)) {
-    const Parallelogram p = (*shapes)[primitive];
-    return Frame{to_double(cleaned(p.corner)), to_double(p.u), to_double(p.v), false};
-  }
-  return std::nullopt;
+  const Parallelogram p = std::get<Strided<Parallelogram>>(geometry.shapes)[primitive];
+  return {to_double(cleaned(p.corner)), to_double(p.u), to_double(p.v), false};
 }
 
 struct Corner {
@@ -83,21 +81,29 @@ constexpr double kCutSlack = 0x1p-44;     ///< of the coordinates' size: how far
 constexpr double kCornerError = 0x1p-24;  ///< of a stored corner, in s and in t
 constexpr double kRounding = 0x1p-49;     ///< of a coordinate made from s and t, of the coordinates' size
 
-}  // namespace
+size_t cut_fragment(const Sphere& sphere, const Box3f& cell, std::span<FragmentCorner, kMaxFragmentCorners> sides) {
+  const Box3f box = clipped_bounds(sphere, cell);
+  if (box.is_empty() || is_degenerate(sphere)) return 0;
+  bool is_cut = false;
+  for (uint32_t axis = 0; axis < 3; ++axis) {
+    const double center = without_minus_zero(sphere.center[axis]), radius = sphere.radius;
+    const double from = (box.lower[axis] - center) / radius, to = (box.upper[axis] - center) / radius;
+    is_cut = is_cut || from > -1 || to < 1;
+    sides[axis] = {static_cast<float>(std::max(from, -1.0)), static_cast<float>(std::min(to, 1.0))};
+  }
+  return is_cut ? 3 : 0;
+}
 
-size_t cut_fragment(const Geometry& geometry, uint32_t primitive, const Box3f& cell,
-                    std::span<FragmentCorner, kMaxFragmentCorners> corners) {
-  const std::optional<Frame> frame = frame_of(geometry, primitive);
-  if (!frame) return 0;
+size_t cut_fragment(const Frame& frame, const Box3f& cell, std::span<FragmentCorner, kMaxFragmentCorners> corners) {
   Polygon polygon;
   polygon.push({0, 0});
   polygon.push({1, 0});
-  if (!frame->is_triangle) polygon.push({1, 1});
+  if (!frame.is_triangle) polygon.push({1, 1});
   polygon.push({0, 1});
-  const Vec3d slack = kCutSlack * frame->size();
+  const Vec3d slack = kCutSlack * frame.size();
   bool is_cut = false;
   for (uint32_t axis = 0; axis < 3; ++axis) {
-    const double origin = frame->origin[axis], by_s = frame->along_s[axis], by_t = frame->along_t[axis];
+    const double origin = frame.origin[axis], by_s = frame.along_s[axis], by_t = frame.along_t[axis];
     const Side above_lower{origin - (cell.lower[axis] - slack[axis]), by_s, by_t};
     const Side below_upper{cell.upper[axis] + slack[axis] - origin, -by_s, -by_t};
     is_cut = keep_inside(polygon, above_lower) || is_cut;
@@ -110,18 +116,45 @@ size_t cut_fragment(const Geometry& geometry, uint32_t primitive, const Box3f& c
   return polygon.size;
 }
 
-Box3f fragment_bounds(const Geometry& geometry, uint32_t primitive, std::span<const FragmentCorner> corners) {
-  const Box3f whole = primitive_bounds(geometry, primitive);
-  const std::optional<Frame> frame = corners.empty() ? std::nullopt : frame_of(geometry, primitive);
-  if (!frame) return whole;
-  Vec3d lower = frame->at(corners[0].s, corners[0].t), upper = lower;
+Box3f bounds_of(const Sphere& sphere, std::span<const FragmentCorner> sides) {
+  const Vec3d center = to_double(cleaned(sphere.center));
+  const double radius = sphere.radius;
+  Vec3d lower, upper;
+  for (uint32_t axis = 0; axis < 3; ++axis) {
+    const double slack = kCornerError * radius + kRounding * (std::abs(center[axis]) + radius);
+    lower[axis] = center[axis] + radius * sides[axis].s - slack;
+    upper[axis] = center[axis] + radius * sides[axis].t + slack;
+  }
+  return outward(lower, upper);
+}
+
+Box3f bounds_of(const Frame& frame, std::span<const FragmentCorner> corners) {
+  Vec3d lower = frame.at(corners[0].s, corners[0].t), upper = lower;
   for (const FragmentCorner& corner : corners.subspan(1)) {
-    const Vec3d p = frame->at(corner.s, corner.t);
+    const Vec3d p = frame.at(corner.s, corner.t);
     lower = min(lower, p);
     upper = max(upper, p);
   }
-  const Vec3d slack = kCornerError * (abs(frame->along_s) + abs(frame->along_t)) + kRounding * frame->size();
-  return intersected(outward(lower - slack, upper + slack), whole);
+  const Vec3d slack = kCornerError * (abs(frame.along_s) + abs(frame.along_t)) + kRounding * frame.size();
+  return outward(lower - slack, upper + slack);
+}
+
+}  // namespace
+
+size_t cut_fragment(const Geometry& geometry, uint32_t primitive, const Box3f& cell,
+                    std::span<FragmentCorner, kMaxFragmentCorners> corners) {
+  const auto* spheres = std::get_if<Strided<Sphere>>(&geometry.shapes);
+  return spheres != nullptr ? cut_fragment((*spheres)[primitive], cell, corners)
+                            : cut_fragment(frame_of(geometry, primitive), cell, corners);
+}
+
+Box3f fragment_bounds(const Geometry& geometry, uint32_t primitive, std::span<const FragmentCorner> corners) {
+  const Box3f whole = primitive_bounds(geometry, primitive);
+  if (corners.empty()) return whole;
+  const auto* spheres = std::get_if<Strided<Sphere>>(&geometry.shapes);
+  const Box3f box = spheres != nullptr ? bounds_of((*spheres)[primitive], corners)
+                                       : bounds_of(frame_of(geometry, primitive), corners);
+  return intersected(box, whole);
 }
 
 }  // namespace kerf
