@@ -168,7 +168,7 @@ TEST(Refit, EveryTreeHitsWhatBruteForceHitsHoweverThingsMove) {
 TEST(Refit, AnySizeFromDenormalToHuge) {
   const std::vector<std::string> some = {"binned_sah", "early_split(budget=3)+binned_sah", "spatial_split"};
   for (const float size : {1e-40F, 1e-30F, 1e-10F, 1e5F, 1e20F, 1e22F}) {
-    check_moves(random_things(150, 2, size), size, some, 50);
+    check_moves(random_things(150, 2, size), size, some, 20);
   }
 }
 
@@ -232,7 +232,7 @@ TEST(Refit, AnyNumberOfThreadsMakesTheSameTree) {
   const MovingThings things = random_things(kManyThings, 5);
   const MovingThings moved = things.moved([](Vec3f p) { return twisted(p, 0.1F); });
   const std::vector<Geometry> geometries = moved.geometries();
-  for (const std::string structure : {"early_split(budget=2)+binned_sah", "lbvh+skip_pointer", "insertion"}) {
+  for (const std::string structure : {"early_split(budget=2)+binned_sah", "lbvh+skip_pointer", "spatial_split+packets"}) {
     Scene scene = scene_of(things, {.structure = structure, .refittable = true});
     const RefitReport one = scene.refit(geometries, 1);
     const uint64_t hash = scene.structure().hash();
@@ -355,10 +355,10 @@ TEST(Refit, GrowthTellsAWornTreeFromAGoodOne) {
     const auto growth = [&](const MovingThings& now) { return scene.refit(now.geometries()).growth; };
     EXPECT_NEAR(growth(things.moved([](Vec3f p) { return 3.0F * p + Vec3f{7, 0, 0}; })), 1, 2e-3);
     EXPECT_FALSE(scene.refit(things.geometries()).should_rebuild);
-    double last = 1;
-    for (const float turn : {0.05F, 0.15F, 0.4F}) {
+    double last = 1.05;
+    for (const float turn : {0.2F, 0.5F, 2.0F}) {
       const double now = growth(things.moved([=](Vec3f p) { return twisted(p, turn); }));
-      EXPECT_GT(now, last);
+      EXPECT_GT(now, last) << turn;
       last = now;
     }
     Random random(11);

@@ -8,8 +8,8 @@
 namespace kerf {
 
 /// A place on a primitive that moves with its vertices: a + s (b - a) + t (c - a) on a triangle, so that s and t are
-/// barycentric coordinates, corner + s u + t v on a parallelogram. A sphere's part is held by a box, three of these: from
-/// s to t along x, y and z, in radii from its centre. 8 bytes.
+/// barycentric coordinates, corner + s u + t v on a parallelogram. A sphere's part is held by a box, three of these:
+/// from s to t along x, y and z, in radii from its centre. 8 bytes.
 struct FragmentCorner {
   float s = 0, t = 0;
 };
@@ -32,5 +32,10 @@ size_t cut_fragment(const Geometry& geometry, uint32_t primitive, const Box3f& c
 /// polygon it holds all that lies within 2^-24 of it, and no part reaches past the whole primitive's box. Without
 /// corners: that box.
 Box3f fragment_bounds(const Geometry& geometry, uint32_t primitive, std::span<const FragmentCorner> corners);
+
+/// What a tree built anew would have to hold of a part: of one that was cut, which it could cut again, its own area; of
+/// a whole primitive or a sphere, half the area of its box.
+double fragment_area(const Geometry& geometry, uint32_t primitive, std::span<const FragmentCorner> corners,
+                     const Box3f& bounds);
 
 }  // namespace kerf

@@ -61,14 +61,14 @@ Bvh make_bvh(const Bvh2& layout) {
   return bvh;
 }
 
-RefitOutcome refit(Bvh2& layout, const LeafBounds& leaf_bounds) {
+RefitOutcome refit(Bvh2& layout, const LeafParts& leaf_parts) {
   if (layout.is_empty()) return {};
   const auto children = [&](const Bvh2Child& parent) {
     Bvh2Node& node = layout.nodes[parent.first];
     return std::pair(&node.child[0], &node.child[1]);
   };
-  const double area = refit_nodes(layout.root, children, leaf_bounds);
-  return {layout.root.bounds(), area};
+  const RefitSums sums = refit_nodes(layout.root, children, leaf_parts);
+  return {layout.root.bounds(), sums};
 }
 
 void mark_axes(Bvh2& layout) {

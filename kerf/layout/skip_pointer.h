@@ -38,7 +38,7 @@ struct SkipPointerBvh {
 SkipPointerBvh make_skip_pointer_bvh(Bvh&& bvh);
 
 /// Makes every box anew; see refit_nodes().
-RefitOutcome refit(SkipPointerBvh& layout, const LeafBounds& leaf_bounds);
+RefitOutcome refit(SkipPointerBvh& layout, const LeafParts& leaf_parts);
 
 /// The same tree, its children in pairs; nothing where the pointers make no tree.
 std::optional<Bvh> make_bvh(const SkipPointerBvh& layout);

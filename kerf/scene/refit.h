@@ -30,18 +30,20 @@ class RestPose {
   /// Of a finished tree, repeats marked, over the geometries at rest. `dropped`: see find_invalid().
   RestPose(const Bvh& bvh, std::span<const Geometry> geometries, std::vector<PrimitiveNumber> dropped);
 
-  /// Throws Error(invalid_argument) unless `moved` has the same kinds and counts as `built`, Error(invalid_geometry)
-  /// for primitives in the tree that are invalid now: the first and how many.
-  void check(std::span<const Geometry> built, std::span<const Geometry> moved) const;
-
-  /// Makes the boxes of the structure, which was made from the tree, anew around its geometries; returns the root's.
-  Box3f refit(Structure& structure);
+  /// Puts `moved` in the place of `built`, which the structure made from the tree looks at, and makes its boxes anew
+  /// around it; returns the root's. Throws Error(invalid_argument) unless there are the same kinds and counts, and
+  /// Error(invalid_geometry) for primitives in the tree that are invalid now, the first and how many; then all is as
+  /// before.
+  Box3f refit(Structure& structure, std::span<Geometry> built, std::span<const Geometry> moved);
 
   const RefitReport& report() const { return report_; }
 
  private:
+  void check(std::span<const Geometry> built, std::span<const Geometry> moved) const;
+
   Fragments fragments_;
   std::vector<PrimitiveNumber> dropped_;
+  RefitOutcome built_;
   RefitReport report_;
 };
 

@@ -233,10 +233,8 @@ const RefitReport& Scene::refit(std::span<const Geometry> moved, int threads) {
   }
   with_threads(threads, [&] {
     const StandardFloat standard;
-    built_->rest->check(built_->geometries, moved);
-    std::copy(moved.begin(), moved.end(), built_->geometries.begin());
-    std::copy(moved.begin(), moved.end(), added_->geometries.begin());
-    built_->bounds = built_->rest->refit(*built_->movable);
+    built_->bounds = built_->rest->refit(*built_->movable, built_->geometries, moved);
+    std::copy(built_->geometries.begin(), built_->geometries.end(), added_->geometries.begin());
   });
   return built_->rest->report();
 }

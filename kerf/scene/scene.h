@@ -85,7 +85,7 @@ class Scene {
   /// gets worse the more the shape changes; the report says by how much. For a scene built with `refittable`. `moved`:
   /// all that was built, of the same kinds and counts, in the same memory or in other, which the scene looks at from
   /// then on. Not while queries run. Throws Error(not_built) before build(), Error(invalid_option) for a scene that was
-  /// not built for it, and what RestPose::check() throws; the scene then looks at the memory that it looked at before.
+  /// not built for it, and what RestPose::refit() throws; the scene then looks at the memory that it looked at before.
   const RefitReport& refit(std::span<const Geometry> moved, int threads = 0);
   /// The same for vertices that were changed where they are. After an Error(invalid_geometry) queries may miss what
   /// moved until a refit() that succeeds.

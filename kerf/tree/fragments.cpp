@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "kerf/base/parallel.h"
 
@@ -37,6 +38,14 @@ Fragments::Fragments(const Bvh& bvh, std::span<const Geometry> geometries) {
     for_repeated(block,
                  [&](uint32_t number, const LeafSlot&, const Box3f&) { places_[number] += first[block] * kPerCount; });
   });
+}
+
+double parts_area(const Bvh& bvh, const LeafParts& parts) {
+  constexpr size_t kGrain = 8192;  // slots
+  std::vector<double> blocks((bvh.slots.size() + kGrain - 1) / kGrain);
+  parallel_for(bvh.slots.size(), kGrain,
+               [&](size_t begin, size_t end) { blocks[begin / kGrain] = parts(begin, end - begin).area; });
+  return std::accumulate(blocks.begin(), blocks.end(), 0.0);
 }
 
 }  // namespace kerf

@@ -20,10 +20,17 @@ class Fragments {
   /// Of a finished tree, repeats marked, over the geometries at rest. Parallel; the outcome does not depend on it.
   Fragments(const Bvh& bvh, std::span<const Geometry> geometries);
 
-  /// A box around the part that slot number `number` stands for, of the primitives as they are now.
-  Box3f bounds(size_t number, const LeafSlot& slot, std::span<const Geometry> geometries) const {
-    if (!slot.is_repeated()) return primitive_bounds(geometries[slot.geometry()], slot.primitive);
-    return fragment_bounds(geometries[slot.geometry()], slot.primitive, corners_of(number));
+  /// What slot number `number` stands for, as the primitives are now.
+  struct Part {
+    Box3f bounds;
+    double area = 0;  ///< see fragment_area()
+  };
+  Part part(size_t number, const LeafSlot& slot, std::span<const Geometry> geometries) const {
+    const Geometry& geometry = geometries[slot.geometry()];
+    const std::span<const FragmentCorner> corners =
+        slot.is_repeated() ? corners_of(number) : std::span<const FragmentCorner>{};
+    const Box3f bounds = fragment_bounds(geometry, slot.primitive, corners);
+    return {bounds, fragment_area(geometry, slot.primitive, corners, bounds)};
   }
 
   size_t bytes() const { return places_.size() * sizeof(uint64_t) + corners_.size() * sizeof(FragmentCorner); }
@@ -40,17 +47,24 @@ class Fragments {
   std::vector<FragmentCorner> corners_;
 };
 
-/// What a leaf holds by now, for refit_nodes().
-struct LeafBounds {
+/// What leaves hold by now, for refit_nodes().
+struct LeafParts {
   const Fragments& fragments;
   std::span<const LeafSlot> slots;
   std::span<const Geometry> geometries;
 
-  Box3f operator()(size_t first, size_t count) const {
-    Box3f box;
-    for (size_t i = first; i < first + count; ++i) box.extend(fragments.bounds(i, slots[i], geometries));
-    return box;
+  Fragments::Part operator()(size_t first, size_t count) const {
+    Fragments::Part all;
+    for (size_t i = first; i < first + count; ++i) {
+      const Fragments::Part part = fragments.part(i, slots[i], geometries);
+      all.bounds.extend(part.bounds);
+      all.area += part.area;
+    }
+    return all;
   }
 };
+
+/// The sum of the areas of all parts of a tree.
+double parts_area(const Bvh& bvh, const LeafParts& parts);
 
 }  // namespace kerf

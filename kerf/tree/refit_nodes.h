@@ -7,29 +7,37 @@
 
 namespace kerf {
 
-/// What came of a refit: the root, and what sah_cost() divides by its area.
-struct RefitOutcome {
-  Box3f bounds;     ///< of the root
-  double area = 0;  ///< half the area of every inner node, and that of every leaf times its number of slots
-
-  double sah_cost() const { return half_area(bounds) > 0 ? area / half_area(bounds) : 0; }
+/// Sums over a subtree.
+struct RefitSums {
+  double nodes = 0;  ///< half the area of every inner node, and that of every leaf times its number of slots
+  double parts = 0;  ///< the area of what is in the leaves, see fragment_area()
 };
 
-/// Makes the boxes of a subtree anew from the bottom up: a leaf's is leaf_bounds(first slot, count), an inner node's
-/// the union of its children's. Returns RefitOutcome::area. `children(node)` gives the first and the second as
-/// pointers. Both halves of upper levels run at once; boxes and sums do not depend on who came first.
-template <class Node, class Children, class Leaf>
-double refit_nodes(Node& node, const Children& children, const Leaf& leaf_bounds, uint32_t depth = 0) {
+/// What came of a refit.
+struct RefitOutcome {
+  Box3f bounds;  ///< of the root
+  RefitSums sums;
+
+  double sah_cost() const { return half_area(bounds) > 0 ? sums.nodes / half_area(bounds) : 0; }
+};
+
+/// Makes the boxes of a subtree anew from the bottom up: a leaf's is that of leaf_parts(first slot, count), an inner
+/// node's the union of its children's. `children(node)` gives the first and the second as pointers. Both halves of
+/// upper levels run at once; boxes and sums do not depend on who came first.
+template <class Node, class Children, class LeafParts>
+RefitSums refit_nodes(Node& node, const Children& children, const LeafParts& leaf_parts, uint32_t depth = 0) {
   constexpr uint32_t kTaskDepth = 10;
   Box3f box;
-  double below = 0;
+  RefitSums sums;
   if (node.is_leaf()) {
-    box = leaf_bounds(node.first, node.count);
+    const auto [bounds, area] = leaf_parts(node.first, node.count);
+    box = bounds;
+    sums.parts = area;
   } else {
     const auto [first, second] = children(node);
-    double left = 0, right = 0;
-    const auto refit_left = [&, child = first] { left = refit_nodes(*child, children, leaf_bounds, depth + 1); };
-    const auto refit_right = [&, child = second] { right = refit_nodes(*child, children, leaf_bounds, depth + 1); };
+    RefitSums left, right;
+    const auto refit_left = [&, child = first] { left = refit_nodes(*child, children, leaf_parts, depth + 1); };
+    const auto refit_right = [&, child = second] { right = refit_nodes(*child, children, leaf_parts, depth + 1); };
     if (depth < kTaskDepth) {
       parallel_invoke(refit_left, refit_right);
     } else {
@@ -37,11 +45,12 @@ double refit_nodes(Node& node, const Children& children, const Leaf& leaf_bounds
       refit_right();
     }
     box = united(first->bounds(), second->bounds());
-    below = left + right;
+    sums = {left.nodes + right.nodes, left.parts + right.parts};
   }
   node.lower = box.lower;
   node.upper = box.upper;
-  return below + half_area(box) * (node.is_leaf() ? node.count : 1);
+  sums.nodes += half_area(box) * (node.is_leaf() ? node.count : 1);
+  return sums;
 }
 
 }  // namespace kerf

@@ -20,9 +20,9 @@ class AxisStructure : public Bvh2Structure<AxisTracer> {
   }
 
   RefitOutcome refit(const Fragments& fragments) override {
-    const RefitOutcome sums = Bvh2Structure::refit(fragments);
+    const RefitOutcome outcome = Bvh2Structure::refit(fragments);
     mark_axes(tracer().layout);
-    return sums;
+    return outcome;
   }
 };
 
