@@ -157,15 +157,15 @@ Box3f fragment_bounds(const Geometry& geometry, uint32_t primitive, std::span<co
   return intersected(box, whole);
 }
 
-double fragment_area(const Geometry& geometry, uint32_t primitive, std::span<const FragmentCorner> corners,
-                     const Box3f& bounds) {
-  if (corners.empty() || std::holds_alternative<Strided<Sphere>>(geometry.shapes)) return half_area(bounds);
-  double twice = 0;
+double fragment_area(const Geometry& geometry, uint32_t primitive, std::span<const FragmentCorner> corners) {
+  if (std::holds_alternative<Strided<Sphere>>(geometry.shapes)) return half_area(primitive_bounds(geometry, primitive));
+  const Frame frame = frame_of(geometry, primitive);
+  double twice = frame.is_triangle ? 1 : 2;  // the area in s and t
+  if (!corners.empty()) twice = 0;
   for (size_t i = 0; i < corners.size(); ++i) {
     const FragmentCorner p = corners[i], q = corners[i + 1 == corners.size() ? 0 : i + 1];
     twice += static_cast<double>(p.s) * q.t - static_cast<double>(q.s) * p.t;
   }
-  const Frame frame = frame_of(geometry, primitive);
   const Vec3d normal = cross(frame.along_s, frame.along_t);
   return 0.5 * std::abs(twice) * std::sqrt(dot(normal, normal));
 }

@@ -33,9 +33,7 @@ size_t cut_fragment(const Geometry& geometry, uint32_t primitive, const Box3f& c
 /// corners: that box.
 Box3f fragment_bounds(const Geometry& geometry, uint32_t primitive, std::span<const FragmentCorner> corners);
 
-/// What a tree built anew would have to hold of a part: of one that was cut, which it could cut again, its own area; of
-/// a whole primitive or a sphere, half the area of its box.
-double fragment_area(const Geometry& geometry, uint32_t primitive, std::span<const FragmentCorner> corners,
-                     const Box3f& bounds);
+/// The area of such a part's surface; of a sphere's, half the area of the sphere's box.
+double fragment_area(const Geometry& geometry, uint32_t primitive, std::span<const FragmentCorner> corners);
 
 }  // namespace kerf

@@ -15,8 +15,8 @@ std::string describe(const Geometry& geometry) {
   return std::to_string(primitive_count(geometry)) + " " + std::string(kind_name(geometry)) + "s";
 }
 
-/// See docs/refit.md. Half the logarithm of what the cost grew by, half that of what boxes grew by per area of their
-/// content; as the square of the nodes' sum over the areas of root and content.
+/// The geometric mean of what the SAH cost grew by and what boxes grew by per area of what they hold: the first alone
+/// cries wolf where the scene itself became harder, the second is blind where the content's own boxes grew.
 double growth(const RefitOutcome& before, const RefitOutcome& now) {
   const auto worth = [](const RefitOutcome& tree) {
     const double content = half_area(tree.bounds) * tree.sums.parts;
@@ -29,14 +29,14 @@ double growth(const RefitOutcome& before, const RefitOutcome& now) {
 
 }  // namespace
 
-RestPose::RestPose(const Bvh& bvh, std::span<const Geometry> geometries, std::vector<PrimitiveNumber> dropped)
-    : fragments_(bvh, geometries), dropped_(std::move(dropped)) {
+RestPose::RestPose(const Bvh& bvh, std::span<const Geometry> geometries, std::vector<PrimitiveNumber> left_out,
+                   size_t primitives)
+    : fragments_(bvh, geometries, primitives), left_out_(std::move(left_out)) {
   if (!bvh.nodes.empty()) built_.bounds = bvh.nodes[0].bounds();
   report_.sah_cost = report_.built_sah_cost = sah_cost(bvh);
   built_.sums.nodes = report_.sah_cost * half_area(built_.bounds);
   built_.sums.parts = parts_area(bvh, {fragments_, bvh.slots, geometries});
-  report_.left_out = dropped_.size();
-  report_.bytes = fragments_.bytes() + dropped_.size() * sizeof(PrimitiveNumber);
+  report_.bytes = fragments_.bytes() + left_out_.size() * sizeof(PrimitiveNumber);
 }
 
 void RestPose::check(std::span<const Geometry> built, std::span<const Geometry> moved) const {
@@ -52,7 +52,7 @@ void RestPose::check(std::span<const Geometry> built, std::span<const Geometry> 
   }
   const std::vector<PrimitiveNumber> invalid = find_invalid(moved);
   std::vector<PrimitiveNumber> now;
-  std::set_difference(invalid.begin(), invalid.end(), dropped_.begin(), dropped_.end(), std::back_inserter(now));
+  std::set_difference(invalid.begin(), invalid.end(), left_out_.begin(), left_out_.end(), std::back_inserter(now));
   if (!now.empty()) refuse_invalid(moved, now.front(), now.size(), "the scene was not refitted");
 }
 
@@ -63,7 +63,11 @@ Box3f RestPose::refit(Structure& structure, std::span<Geometry> built, std::span
   const RefitOutcome now = structure.refit(fragments_);
   report_.sah_cost = now.sah_cost();
   report_.growth = growth(built_, now);
-  report_.should_rebuild = report_.growth > kRebuildGrowth;
+  report_.left_out = static_cast<size_t>(std::count_if(left_out_.begin(), left_out_.end(), [&](PrimitiveNumber n) {
+    return find_defect(built[n.geometry], n.primitive) == Defect::none &&
+           !is_degenerate(built[n.geometry], n.primitive);
+  }));
+  report_.should_rebuild = report_.growth > kRebuildGrowth || report_.left_out > 0;
   report_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return now.bounds;
 }

@@ -165,7 +165,7 @@ void Scene::Built::make_structure(StructureInput input, std::span<const Stage> s
   }
   report.seconds.optimise = watch.lap();
   if (refittable) {
-    rest.emplace(bvh, geometries, report.invalid > 0 ? find_invalid(geometries) : std::vector<PrimitiveNumber>{});
+    rest.emplace(bvh, geometries, find_left_out(geometries), kept);
   }
   std::unique_ptr<Structure> made =
       layout.make(std::move(bvh), input, last != nullptr ? stages.back().options : OptionValues(layout.options));

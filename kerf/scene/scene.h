@@ -25,7 +25,7 @@ struct BuildOptions {
   int threads = 0;            ///< 0: as many as the caller's arena has
   bool skip_invalid = false;  ///< drop primitives that are not finite or have a bad index, instead of an error
   WorkLimit limit = {};       ///< when to give up
-  bool refittable = false;    ///< keep what Scene::refit() needs, primitives without area included
+  bool refittable = false;    ///< keep what refit() needs, and primitives that may get an area
 };
 
 /// What a build did and what came of it.
@@ -33,7 +33,7 @@ struct BuildReport {
   std::string structure;                ///< the pipeline in its canonical spelling
   size_t primitives = 0;                ///< that the caller gave
   size_t invalid = 0;                   ///< of those: dropped because of skip_invalid
-  size_t degenerate = 0;                ///< of those: without area, so never hit; left out unless refittable
+  size_t degenerate = 0;                ///< of those: without area, so never hit; left out, if not `refittable`
   size_t references = 0;                ///< in the leaves
   double references_per_primitive = 0;  ///< R: references / (primitives that were not dropped or left out); 0 if none
   /// The limit that the splitter used: a surface area, or refine's edge length or area; infinite without a splitter,

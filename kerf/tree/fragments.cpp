@@ -8,7 +8,8 @@
 
 namespace kerf {
 
-Fragments::Fragments(const Bvh& bvh, std::span<const Geometry> geometries) {
+Fragments::Fragments(const Bvh& bvh, std::span<const Geometry> geometries, size_t primitives)
+    : is_split_(static_cast<double>(bvh.slots.size()) > kSplit * static_cast<double>(primitives)) {
   const auto is_repeated = [](const LeafSlot& slot) { return slot.is_repeated(); };
   if (std::none_of(bvh.slots.begin(), bvh.slots.end(), is_repeated)) return;
   constexpr size_t kGrain = 4096;  // nodes

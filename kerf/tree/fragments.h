@@ -17,20 +17,23 @@ namespace kerf {
 class Fragments {
  public:
   Fragments() = default;
-  /// Of a finished tree, repeats marked, over the geometries at rest. Parallel; the outcome does not depend on it.
-  Fragments(const Bvh& bvh, std::span<const Geometry> geometries);
+  /// Of a finished tree of so many primitives, repeats marked, over the geometries at rest. Parallel; the outcome does
+  /// not depend on the number of threads.
+  Fragments(const Bvh& bvh, std::span<const Geometry> geometries, size_t primitives);
 
   /// What slot number `number` stands for, as the primitives are now.
   struct Part {
     Box3f bounds;
-    double area = 0;  ///< see fragment_area()
+    /// What a tree built anew has to hold of it: half the area of its box, but where primitives are cut, as they could
+    /// be again, that of its surface.
+    double area = 0;
   };
   Part part(size_t number, const LeafSlot& slot, std::span<const Geometry> geometries) const {
     const Geometry& geometry = geometries[slot.geometry()];
     const std::span<const FragmentCorner> corners =
         slot.is_repeated() ? corners_of(number) : std::span<const FragmentCorner>{};
     const Box3f bounds = fragment_bounds(geometry, slot.primitive, corners);
-    return {bounds, fragment_area(geometry, slot.primitive, corners, bounds)};
+    return {bounds, is_split_ ? fragment_area(geometry, slot.primitive, corners) : half_area(bounds)};
   }
 
   size_t bytes() const { return places_.size() * sizeof(uint64_t) + corners_.size() * sizeof(FragmentCorner); }
@@ -41,10 +44,12 @@ class Fragments {
     return std::span(corners_).subspan(place / kPerCount, place % kPerCount);
   }
 
+  static constexpr double kSplit = 1.1;  // references for each primitive from which a tree counts as split
   static constexpr uint64_t kPerCount = kMaxFragmentCorners + 1;
 
   std::vector<uint64_t> places_;  ///< of each slot: its first corner times kPerCount, plus their number; or none at all
   std::vector<FragmentCorner> corners_;
+  bool is_split_ = false;
 };
 
 /// What leaves hold by now, for refit_nodes().

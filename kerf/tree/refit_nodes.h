@@ -10,7 +10,7 @@ namespace kerf {
 /// Sums over a subtree.
 struct RefitSums {
   double nodes = 0;  ///< half the area of every inner node, and that of every leaf times its number of slots
-  double parts = 0;  ///< the area of what is in the leaves, see fragment_area()
+  double parts = 0;  ///< the area of what is in the leaves, see Fragments::Part
 };
 
 /// What came of a refit.

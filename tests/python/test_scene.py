@@ -70,7 +70,7 @@ def test_refit_follows_moved_vertices(structure):
         assert 0.9 < report["growth"] < 1.1 and not report["should_rebuild"]
     vertices[:] = np.random.default_rng(3).permutation(vertices)
     report = scene.refit(vertices)
-    assert report["growth"] > 2 and report["should_rebuild"]
+    assert report["growth"] > 1.5 and report["should_rebuild"]
     assert report["sah_cost"] > report["built_sah_cost"] > 0
 
 
