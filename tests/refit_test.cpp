@@ -323,7 +323,8 @@ TEST(Refit, ATriangleWithAVertexTwiceIsInNoTree) {
   things.triangles[5][1] = things.triangles[5][0];
   Scene scene = scene_of(things, {.refittable = true});
   EXPECT_EQ(scene.report().references, scene.report().primitives - 1);
-  EXPECT_EQ(scene.refit(things.moved([](Vec3f p) { return -p; }).geometries()).left_out, 0U);
+  const MovingThings moved = things.moved([](Vec3f p) { return -p; });
+  EXPECT_EQ(scene.refit(moved.geometries()).left_out, 0U);
   things.triangles[5][1] = things.triangles[5][0] + 1;
   EXPECT_EQ(scene.refit(things.geometries()).left_out, 1U);
   EXPECT_TRUE(scene.refit().should_rebuild);

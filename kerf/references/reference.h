@@ -1,6 +1,5 @@
 #pragma once
 
-#include <compare>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -42,7 +41,10 @@ PrimitiveReferences make_references(std::span<const Geometry> geometries, bool s
 /// A primitive of several geometries.
 struct PrimitiveNumber {
   uint32_t geometry = 0, primitive = 0;
-  friend auto operator<=>(const PrimitiveNumber&, const PrimitiveNumber&) = default;
+  friend bool operator==(const PrimitiveNumber&, const PrimitiveNumber&) = default;
+  friend bool operator<(const PrimitiveNumber& a, const PrimitiveNumber& b) {
+    return a.geometry != b.geometry ? a.geometry < b.geometry : a.primitive < b.primitive;
+  }
 };
 
 /// The primitives that make_references() refuses, in order, or all that it leaves out with skip_invalid and movable:

@@ -20,11 +20,11 @@ std::string describe(const Geometry& geometry) {
 double growth(const RefitOutcome& before, const RefitOutcome& now) {
   const auto worth = [](const RefitOutcome& tree) {
     const double content = half_area(tree.bounds) * tree.sums.parts;
-    return content > 0 ? tree.sums.nodes / std::sqrt(content) : 0;
+    return tree.sums.nodes > 0 ? tree.sums.nodes / std::sqrt(content) : 0;
   };
   const double was = worth(before), is = worth(now);
   if (was == is) return 1;
-  return was > 0 ? is / was : std::numeric_limits<double>::infinity();
+  return was > 0 && std::isfinite(was) ? is / was : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace
