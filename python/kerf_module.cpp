@@ -160,14 +160,31 @@ struct Rays {
 class MeshScene {
  public:
   MeshScene(const py::object& vertices, const py::object& faces, const std::string& structure, int threads,
-            bool skip_invalid)
+            bool skip_invalid, bool refittable)
       : vertices_(to_floats(vertices, "vertices")), faces_(to_faces(faces, skip_invalid)), threads_(threads) {
     if (threads < 0) refuse("threads", "0 or more are expected, not " + std::to_string(threads));
     check_rows(vertices_, "vertices");
     const auto corners = to_strided<Vec3f>(vertices_);
     scene_.add(TriangleMesh{corners, to_strided<TriangleCorners>(faces_)});
     const py::gil_scoped_release release;
-    scene_.build({.structure = structure, .threads = threads, .skip_invalid = skip_invalid});
+    scene_.build({.structure = structure, .threads = threads, .skip_invalid = skip_invalid, .refittable = refittable});
+  }
+
+  /// The array is looked at from now on, and kept; after an error the one before stays.
+  py::dict refit(const py::object& vertices) {
+    using namespace py::literals;
+    py::array_t<float> moved = to_floats(vertices, "vertices");
+    check_rows(moved, "vertices");
+    const auto corners = to_strided<Vec3f>(moved);
+    const Geometry geometry{TriangleMesh{corners, to_strided<TriangleCorners>(faces_)}};
+    const RefitReport& r = [&]() -> const RefitReport& {
+      const py::gil_scoped_release release;
+      return scene_.refit({&geometry, 1}, threads_);
+    }();
+    vertices_ = std::move(moved);
+    return py::dict("growth"_a = r.growth, "should_rebuild"_a = r.should_rebuild, "sah_cost"_a = r.sah_cost,
+                    "built_sah_cost"_a = r.built_sah_cost, "left_out"_a = r.left_out, "bytes"_a = r.bytes,
+                    "seconds"_a = r.seconds);
   }
 
   /// Calls query(rays, first, hits) for blocks of rays on all threads, without Python's lock.
@@ -280,10 +297,18 @@ void add_error(py::module_& module) {
 }
 
 constexpr const char* kSceneDoc =
-    "Scene(vertices, faces, structure='balanced', threads=0, skip_invalid=False)\n\n"
+    "Scene(vertices, faces, structure='balanced', threads=0, skip_invalid=False, refittable=False)\n\n"
     "Triangles and what finds which of them rays hit. vertices: (n, 3) numbers; faces: (m, 3) integers.\n"
-    "float32 vertices and uint32 faces are looked at, not copied, and kept alive: leave them unchanged.\n"
+    "float32 vertices and uint32 faces are looked at, not copied, and kept alive: leave them unchanged, or with\n"
+    "refittable=True change them and call refit().\n"
     "Raises Error, a ValueError, for bad input.";
+
+constexpr const char* kRefitDoc =
+    "Follows vertices that moved without a new tree; for a Scene with refittable=True. vertices: (n, 3) numbers for "
+    "the\n"
+    "same faces, the array given before or another, which is kept alive. Returns a dict: `growth` says how much worse "
+    "the\n"
+    "tree has become, `should_rebuild` that a new Scene is faster. Not while other threads query.";
 
 constexpr const char* kClosestDoc =
     "The nearest hit of each ray in [t_min, t_max], as Hits. origins, directions: (n, 3) or (3,); t_min, t_max: "
@@ -307,9 +332,10 @@ PYBIND11_MODULE(kerf, module) {
   module.attr("Hits") = hits;
   module.def("menu", menu_list, "All that a structure may name: a list of dicts.");
   py::class_<MeshScene>(module, "Scene", kSceneDoc)
-      .def(py::init<const py::object&, const py::object&, const std::string&, int, bool>(), py::arg("vertices"),
+      .def(py::init<const py::object&, const py::object&, const std::string&, int, bool, bool>(), py::arg("vertices"),
            py::arg("faces"), py::arg("structure") = kerf::kDefaultStructure, py::arg("threads") = 0,
-           py::arg("skip_invalid") = false)
+           py::arg("skip_invalid") = false, py::arg("refittable") = false)
+      .def("refit", &MeshScene::refit, py::arg("vertices"), kRefitDoc)
       .def("closest_hit", &MeshScene::closest_hit, py::arg("origins"), py::arg("directions"), py::arg("t_min") = 0.0F,
            py::arg("t_max") = infinity, kClosestDoc)
       .def("any_hit", &MeshScene::any_hit, py::arg("origins"), py::arg("directions"), py::arg("t_min") = 0.0F,

@@ -1,5 +1,7 @@
 #include "kerf/layout/bvh2.h"
 
+#include <utility>
+
 #include "kerf/base/parallel.h"
 
 namespace kerf {
@@ -57,6 +59,16 @@ Bvh make_bvh(const Bvh2& layout) {
   }
   bvh.slots = layout.slots;
   return bvh;
+}
+
+RefitOutcome refit(Bvh2& layout, const LeafParts& leaf_parts) {
+  if (layout.is_empty()) return {};
+  const auto children = [&](const Bvh2Child& parent) {
+    Bvh2Node& node = layout.nodes[parent.first];
+    return std::pair(&node.child[0], &node.child[1]);
+  };
+  const RefitSums sums = refit_nodes(layout.root, children, leaf_parts);
+  return {layout.root.bounds(), sums};
 }
 
 void mark_axes(Bvh2& layout) {

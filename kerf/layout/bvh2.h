@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "kerf/tree/bvh.h"
+#include "kerf/tree/fragments.h"
+#include "kerf/tree/refit_nodes.h"
 
 namespace kerf {
 
@@ -45,6 +47,9 @@ Bvh2 make_bvh2(Bvh&& bvh);
 
 /// The tree that a layout was made from.
 Bvh make_bvh(const Bvh2& layout);
+
+/// Makes every box anew; see refit_nodes(). The marks of mark_axes() stay as they are.
+RefitOutcome refit(Bvh2& layout, const LeafParts& leaf_parts);
 
 /// Writes into the count of each inner node along which axis the centres of its children differ most, and whether the
 /// second child is the lower one there: which comes first then follows from the sign of a ray's direction (Mahovsky:

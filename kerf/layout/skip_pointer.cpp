@@ -1,5 +1,7 @@
 #include "kerf/layout/skip_pointer.h"
 
+#include <utility>
+
 namespace kerf {
 
 SkipPointerBvh make_skip_pointer_bvh(Bvh&& bvh) {
@@ -23,6 +25,16 @@ SkipPointerBvh make_skip_pointer_bvh(Bvh&& bvh) {
   layout.slots = std::move(bvh.slots);
   bvh = {};
   return layout;
+}
+
+RefitOutcome refit(SkipPointerBvh& layout, const LeafParts& leaf_parts) {
+  if (layout.nodes.empty()) return {};
+  const auto children = [&](const SkipPointerNode& parent) {
+    const auto first = static_cast<uint32_t>(&parent - layout.nodes.data()) + 1;
+    return std::pair(&layout.nodes[first], &layout.nodes[layout.after(first)]);
+  };
+  const RefitSums sums = refit_nodes(layout.nodes[0], children, leaf_parts);
+  return {layout.nodes[0].bounds(), sums};
 }
 
 std::optional<Bvh> make_bvh(const SkipPointerBvh& layout) {

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "kerf/tree/bvh.h"
+#include "kerf/tree/fragments.h"
+#include "kerf/tree/refit_nodes.h"
 
 namespace kerf {
 
@@ -34,6 +36,9 @@ struct SkipPointerBvh {
 };
 
 SkipPointerBvh make_skip_pointer_bvh(Bvh&& bvh);
+
+/// Makes every box anew; see refit_nodes().
+RefitOutcome refit(SkipPointerBvh& layout, const LeafParts& leaf_parts);
 
 /// The same tree, its children in pairs; nothing where the pointers make no tree.
 std::optional<Bvh> make_bvh(const SkipPointerBvh& layout);

@@ -71,6 +71,16 @@ OptionValues options_for(const Stage& stage, const LayoutEntry& layout) {
   return options;
 }
 
+/// Throws unless what the pipeline makes can be refitted.
+void check_refits(const Pipeline& pipeline) {
+  const MenuEntry& last = *pipeline.stages.back().entry;
+  const auto* layout = std::get_if<const LayoutEntry*>(&last.entry);
+  if (last.kind == "structure" || (layout != nullptr && !(*layout)->refits)) {
+    throw Error(ErrorCode::invalid_option, std::string(last.name),
+                "it cannot be refitted: only trees of boxes can, as bvh2, skip_pointer or packets");
+  }
+}
+
 }  // namespace
 
 struct Scene::Added {
@@ -83,11 +93,14 @@ struct Scene::Built {
   std::unique_ptr<const Structure> structure;
   Box3f bounds;
   BuildReport report;
+  size_t kept = 0;               ///< primitives that are in the structure
+  Structure* movable = nullptr;  ///< the same structure, if it is one that can be refitted
+  std::optional<RestPose> rest;  ///< with BuildOptions::refittable
 
   Built(std::vector<Geometry> added, const Pipeline& pipeline, const BuildOptions& options);
   StructureInput make_input(const Pipeline& pipeline, const BuildOptions& options, Stopwatch& watch);
-  void make_structure(StructureInput input, std::span<const Stage> stages, Stopwatch& watch);
-  void describe(size_t kept);
+  void make_structure(StructureInput input, std::span<const Stage> stages, bool refittable, Stopwatch& watch);
+  void describe();
 };
 
 Scene::Built::Built(std::vector<Geometry> added, const Pipeline& pipeline, const BuildOptions& options)
@@ -96,9 +109,8 @@ Scene::Built::Built(std::vector<Geometry> added, const Pipeline& pipeline, const
   report.structure = pipeline.text();
   StructureInput input = make_input(pipeline, options, watch);
   const size_t first = pipeline.stages.front().entry->kind == "splitter" ? 1 : 0;
-  const size_t kept = report.primitives - report.invalid - report.degenerate;
-  make_structure(std::move(input), std::span(pipeline.stages).subspan(first), watch);
-  describe(kept);
+  make_structure(std::move(input), std::span(pipeline.stages).subspan(first), options.refittable, watch);
+  describe();
   const auto& s = report.seconds;
   report.seconds.total = s.references + s.split + s.build + s.optimise + s.layout;
 }
@@ -106,9 +118,10 @@ Scene::Built::Built(std::vector<Geometry> added, const Pipeline& pipeline, const
 StructureInput Scene::Built::make_input(const Pipeline& pipeline, const BuildOptions& options, Stopwatch& watch) {
   report.sa_max = std::numeric_limits<double>::infinity();
   for (const Geometry& geometry : geometries) report.primitives += primitive_count(geometry);
-  PrimitiveReferences whole = make_references(geometries, options.skip_invalid);
+  PrimitiveReferences whole = make_references(geometries, options.skip_invalid, options.refittable);
   report.invalid = whole.invalid;
   report.degenerate = whole.degenerate;
+  kept = whole.references.size();
   for (const Reference& reference : whole.references) bounds.extend(reference.bounds());
   report.seconds.references = watch.lap();
 
@@ -116,7 +129,6 @@ StructureInput Scene::Built::make_input(const Pipeline& pipeline, const BuildOpt
   StructureInput input{all, std::move(whole.references), false, options.limit};
   input.limit.check();
   if (const auto* splitter = std::get_if<const SplitterEntry*>(&pipeline.stages.front().entry->entry)) {
-    const size_t kept = input.references.size();
     SplitResult split = (*splitter)->split({all, input.references, geometry_clipper(all), options.limit},
                                            pipeline.stages.front().options);
     input.references = std::move(split.references);
@@ -130,7 +142,8 @@ StructureInput Scene::Built::make_input(const Pipeline& pipeline, const BuildOpt
 }
 
 /// `stages`: a structure, or a builder, then any number of optimisers, then a layout or none.
-void Scene::Built::make_structure(StructureInput input, std::span<const Stage> stages, Stopwatch& watch) {
+void Scene::Built::make_structure(StructureInput input, std::span<const Stage> stages, bool refittable,
+                                  Stopwatch& watch) {
   if (const auto* entry = std::get_if<const StructureEntry*>(&stages[0].entry->entry)) {
     structure = (*entry)->build(std::move(input), stages[0].options);
     report.seconds.build = watch.lap();
@@ -143,7 +156,7 @@ void Scene::Built::make_structure(StructureInput input, std::span<const Stage> s
   const std::span<const Geometry> all = geometries;
   Bvh bvh = builder.build({std::exchange(input.references, {}), geometry_clipper(all), input.limit},
                           options_for(makers[0], layout));
-  input.is_split = bvh.slots.size() > report.primitives - report.invalid - report.degenerate;  // some builders split
+  input.is_split = bvh.slots.size() > kept;  // some builders split
   if (input.is_split) mark_repeated(bvh, geometries);
   report.seconds.build = watch.lap();
   for (const Stage& stage : makers.subspan(1)) {
@@ -151,13 +164,18 @@ void Scene::Built::make_structure(StructureInput input, std::span<const Stage> s
     bvh = optimiser.optimise(std::move(bvh), options_for(stage, layout), input.limit);
   }
   report.seconds.optimise = watch.lap();
-  structure =
+  if (refittable) {
+    rest.emplace(bvh, geometries, find_left_out(geometries), kept);
+  }
+  std::unique_ptr<Structure> made =
       layout.make(std::move(bvh), input, last != nullptr ? stages.back().options : OptionValues(layout.options));
+  movable = made.get();
+  structure = std::move(made);
   report.seconds.layout = watch.lap();
 }
 
-/// Reporting is not building, so no watch runs. `kept`: primitives that can be hit.
-void Scene::Built::describe(size_t kept) {
+/// Reporting is not building, so no watch runs.
+void Scene::Built::describe() {
   const StructureStatistics statistics = measure(*structure);
   report.references = statistics.references;
   report.references_per_primitive =
@@ -196,16 +214,32 @@ uint32_t Scene::add(Geometry geometry) {
 
 const BuildReport& Scene::build(const BuildOptions& options) {
   const Pipeline pipeline = parse_pipeline(options.structure);
-  std::unique_ptr<const Built> built;
+  if (options.refittable) check_refits(pipeline);
+  std::unique_ptr<Built> built;
   with_threads(options.threads, [&] {
     const StandardFloat standard;
-    built = std::make_unique<const Built>(added_ ? added_->geometries : std::vector<Geometry>{}, pipeline, options);
+    built = std::make_unique<Built>(added_ ? added_->geometries : std::vector<Geometry>{}, pipeline, options);
   });
   built_ = std::move(built);
   table_ = &built_->structure->table();
   data_ = built_->structure->data();
   return built_->report;
 }
+
+const RefitReport& Scene::refit(std::span<const Geometry> moved, int threads) {
+  if (built_ == nullptr) refuse_not_built();
+  if (!built_->rest) {
+    throw Error(ErrorCode::invalid_option, "refit", "the scene was not built for it: set `refittable` of BuildOptions");
+  }
+  with_threads(threads, [&] {
+    const StandardFloat standard;
+    built_->bounds = built_->rest->refit(*built_->movable, built_->geometries, moved);
+    std::copy(built_->geometries.begin(), built_->geometries.end(), added_->geometries.begin());
+  });
+  return built_->rest->report();
+}
+
+const RefitReport& Scene::refit(int threads) { return refit(geometries(), threads); }
 
 const BuildReport& Scene::report() const {
   if (built_ == nullptr) refuse_not_built();

@@ -11,6 +11,7 @@
 #include "kerf/geometry/ray.h"
 #include "kerf/references/split_result.h"
 #include "kerf/scene/presets.h"
+#include "kerf/scene/refit.h"
 #include "kerf/scene/structure.h"
 #include "kerf/trace/trace_table.h"
 
@@ -25,6 +26,7 @@ struct BuildOptions {
   int threads = 0;            ///< 0: as many as the caller's arena has
   bool skip_invalid = false;  ///< drop primitives that are not finite or have a bad index, instead of an error
   WorkLimit limit = {};       ///< when to give up
+  bool refittable = false;    ///< keep what refit() needs, and primitives that may get an area
 };
 
 /// What a build did and what came of it.
@@ -32,7 +34,7 @@ struct BuildReport {
   std::string structure;                ///< the pipeline in its canonical spelling
   size_t primitives = 0;                ///< that the caller gave
   size_t invalid = 0;                   ///< of those: dropped because of skip_invalid
-  size_t degenerate = 0;                ///< of those: without area, so never hit and left out
+  size_t degenerate = 0;                ///< of those: without area, so never hit; left out, if not `refittable`
   size_t references = 0;                ///< in the leaves
   double references_per_primitive = 0;  ///< R: references / (primitives that were not dropped or left out); 0 if none
   /// The limit that the splitter used: a surface area, or refine's edge length or area; infinite without a splitter,
@@ -59,9 +61,9 @@ struct BuildReport {
 ///     kerf::Hit hit = scene.closest_hit({.origin = {0, 0, 5}, .direction = {0, 0, -1}});
 ///
 /// The scene looks at the caller's memory and copies none of it: vertices and indices must stay unchanged until the
-/// next build or the scene's end. Queries are const and may come from any number of threads. Their outcome depends on
-/// neither the structure, the instruction set, the number of threads nor the caller's floating-point mode; among
-/// equally near primitives the one with the smaller geometry, then primitive number is hit.
+/// next build, refit or the scene's end. Queries are const and may come from any number of threads. Their outcome
+/// depends on neither the structure, the instruction set, the number of threads nor the caller's floating-point mode;
+/// among equally near primitives the one with the smaller geometry, then primitive number is hit.
 class Scene {
  public:
   Scene();
@@ -79,6 +81,16 @@ class Scene {
   /// (invalid_option), a primitive that is (invalid_geometry, naming the first and how many) or a limit that was
   /// reached (stopped); the scene then answers as before.
   const BuildReport& build(const BuildOptions& options = {});
+
+  /// Follows vertices that moved, without a new tree: boxes are made anew, what stands in which leaf stays. The tree
+  /// gets worse the more the shape changes; the report says by how much. For a scene built with `refittable`. `moved`:
+  /// all that was built, of the same kinds and counts, in the same memory or in other, which the scene looks at from
+  /// then on. Not while queries run. Throws Error(not_built) before build(), Error(invalid_option) for a scene that was
+  /// not built for it, and what RestPose::refit() throws; the scene then looks at the memory that it looked at before.
+  const RefitReport& refit(std::span<const Geometry> moved, int threads = 0);
+  /// The same for vertices that were changed where they are. After an Error(invalid_geometry) queries may miss what
+  /// moved until a refit() that succeeds.
+  const RefitReport& refit(int threads = 0);
 
   /// What the last build did. Throws Error(not_built) before the first.
   const BuildReport& report() const;
@@ -114,7 +126,7 @@ class Scene {
   struct Added;
   struct Built;
   std::unique_ptr<Added> added_;
-  std::unique_ptr<const Built> built_;
+  std::unique_ptr<Built> built_;
   const TraceTable* table_;
   const void* data_ = nullptr;
 };

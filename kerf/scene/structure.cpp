@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "kerf/base/error.h"
 #include "kerf/scene/structures/all.h"
 
 namespace kerf {
@@ -14,6 +15,10 @@ double Structure::cost() const {
     sum += area * (node.is_leaf ? static_cast<double>(node.slots.size()) : 1);
   });
   return root > 0 ? sum / root : 0;
+}
+
+RefitOutcome Structure::refit(const Fragments&) {
+  throw Error(ErrorCode::invalid_option, "structure", "it cannot be refitted; build it anew");
 }
 
 StructureStatistics measure(const Structure& structure) {

@@ -13,6 +13,8 @@
 #include "kerf/references/clipper.h"
 #include "kerf/trace/trace_table.h"
 #include "kerf/tree/bvh.h"
+#include "kerf/tree/fragments.h"
+#include "kerf/tree/refit_nodes.h"
 
 namespace kerf {
 
@@ -52,6 +54,10 @@ class Structure {
   /// What a random ray that meets the bounds costs: by default the surface area heuristic over visit_nodes(), see
   /// sah_cost().
   virtual double cost() const;
+
+  /// Makes every box anew around what moved. Throws Error(invalid_option) where that cannot be done; see
+  /// LayoutEntry::refits.
+  virtual RefitOutcome refit(const Fragments& fragments);
 };
 
 /// Counted over visit_nodes().
@@ -72,7 +78,8 @@ struct LayoutEntry {
   std::span<const OptionSpec> options;
   uint32_t leaf_size;  ///< slots that a leaf of the Bvh may have at most; 0: any number
   /// The input's references are gone: they are in the Bvh.
-  std::unique_ptr<const Structure> (*make)(Bvh bvh, const StructureInput& input, const OptionValues& options);
+  std::unique_ptr<Structure> (*make)(Bvh bvh, const StructureInput& input, const OptionValues& options);
+  bool refits = false;  ///< its structures can be refitted
 };
 std::span<const LayoutEntry> layouts();
 

@@ -56,6 +56,38 @@ def test_agrees_with_numpy(structure):
     np.testing.assert_allclose(points, a + u * (b - a) + v * (c - a), atol=1e-4)
 
 
+@pytest.mark.parametrize("structure", ["binned_sah", "early_split(budget=2)+lbvh"])
+def test_refit_follows_moved_vertices(structure):
+    vertices, faces = random_mesh(200)
+    origins, directions = random_rays(3000)
+    scene = kerf.Scene(vertices, faces, structure, refittable=True)
+    for moved in (vertices @ np.array([[0, 1, 0], [0, 0, 1], [1, 0, 0]], np.float32), (2 * vertices).tolist(), vertices):
+        report = scene.refit(moved)
+        gc.collect()
+        hits = scene.closest_hit(origins, directions)
+        t = brute_force(np.asarray(moved, np.float32), faces, origins, directions)
+        np.testing.assert_array_equal(hits.primitive, np.where(np.isfinite(t.min(1)), t.argmin(1), -1))
+        assert 0.9 < report["growth"] < 1.1 and not report["should_rebuild"]
+    vertices[:] = np.random.default_rng(3).permutation(vertices)
+    report = scene.refit(vertices)
+    assert report["growth"] > 1.5 and report["should_rebuild"]
+    assert report["sah_cost"] > report["built_sah_cost"] > 0
+
+
+def test_refit_refuses():
+    with pytest.raises(kerf.Error, match="refittable") as error:
+        kerf.Scene(SQUARE, FACES).refit(SQUARE)
+    assert error.value.code == "invalid_option"
+    scene = kerf.Scene(SQUARE, FACES, refittable=True)
+    bad = SQUARE.copy()
+    bad[3, 1] = np.nan
+    for vertices, code in ((bad, "invalid_geometry"), (SQUARE[:3], "invalid_geometry"), (SQUARE[:, :2], "invalid_argument")):
+        with pytest.raises(kerf.Error) as error:
+            scene.refit(vertices)
+        assert error.value.code == code
+        assert scene.closest_hit([1, 3, 5], DOWN).t == 5
+
+
 def test_types_of_results():
     hits = kerf.Scene(SQUARE, FACES).closest_hit([[1, 3, 5], [9, 9, 5]], [DOWN, DOWN])
     assert [x.dtype for x in hits] == [np.float32, np.float32, np.float32, np.int64, np.bool_]

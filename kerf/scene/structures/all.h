@@ -11,7 +11,7 @@ namespace kerf {
 
 // The makers of kerf/scene/structures, a file each, and their rows for the tables in structure.cpp.
 
-std::unique_ptr<const Structure> make_bvh2_structure(Bvh bvh, const StructureInput& input, const OptionValues& options);
+std::unique_ptr<Structure> make_bvh2_structure(Bvh bvh, const StructureInput& input, const OptionValues& options);
 inline constexpr std::string_view kBvh2Orders[] = {"entry", "fixed", "axis", "heap"};
 inline constexpr std::string_view kBvh2BoxTests[] = {"ours", "naive", "williams", "pluecker"};
 inline constexpr OptionSpec kBvh2Options[] = {
@@ -25,20 +25,21 @@ inline constexpr LayoutEntry kBvh2Layout = {
     "",
     kBvh2Options,
     0,
-    make_bvh2_structure};
+    make_bvh2_structure,
+    true};
 
-std::unique_ptr<const Structure> make_skip_pointer_structure(Bvh bvh, const StructureInput& input,
-                                                             const OptionValues& options);
+std::unique_ptr<Structure> make_skip_pointer_structure(Bvh bvh, const StructureInput& input,
+                                                       const OptionValues& options);
 inline constexpr LayoutEntry kSkipPointerLayout = {
     "skip_pointer",
     "a binary tree in depth-first order, each node with a pointer to the one after its subtree: no stack",
     "Smits: Efficiency Issues for Ray Tracing, 1998",
     {},
     0,
-    make_skip_pointer_structure};
+    make_skip_pointer_structure,
+    true};
 
-std::unique_ptr<const Structure> make_packets_structure(Bvh bvh, const StructureInput& input,
-                                                        const OptionValues& options);
+std::unique_ptr<Structure> make_packets_structure(Bvh bvh, const StructureInput& input, const OptionValues& options);
 inline constexpr std::string_view kPacketSizes[] = {"4", "8", "16"};
 inline constexpr OptionSpec kPacketOptions[] = {{"size", "rays in a packet", 1, kPacketSizes}};
 inline constexpr LayoutEntry kPacketsLayout = {
@@ -47,9 +48,9 @@ inline constexpr LayoutEntry kPacketsLayout = {
     "Wald, Boulos, Shirley: Ray Tracing Deformable Scenes using Dynamic Bounding Volume Hierarchies, 2007",
     kPacketOptions,
     0,
-    make_packets_structure};
-std::unique_ptr<const Structure> make_late_split_structure(Bvh bvh, const StructureInput& input,
-                                                           const OptionValues& options);
+    make_packets_structure,
+    true};
+std::unique_ptr<Structure> make_late_split_structure(Bvh bvh, const StructureInput& input, const OptionValues& options);
 inline constexpr OptionSpec kLateSplitOptions[] = {
     {"sa_max", "surface area above which a leaf is cut, all six faces, squared scene units", Box3f::kInfinity, 0,
      Box3f::kInfinity, false, true},

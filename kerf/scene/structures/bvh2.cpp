@@ -18,13 +18,19 @@ class AxisStructure : public Bvh2Structure<AxisTracer> {
     const std::optional<std::string> fault = Bvh2Structure::find_fault();
     return fault ? fault : find_axis_fault(tracer().layout);
   }
+
+  RefitOutcome refit(const Fragments& fragments) override {
+    const RefitOutcome outcome = Bvh2Structure::refit(fragments);
+    mark_axes(tracer().layout);
+    return outcome;
+  }
 };
 
-using Maker = std::unique_ptr<const Structure> (*)(Bvh bvh, const StructureInput& input);
+using Maker = std::unique_ptr<Structure> (*)(Bvh bvh, const StructureInput& input);
 
 template <class Made>
-std::unique_ptr<const Structure> make(Bvh bvh, const StructureInput& input) {
-  return std::make_unique<const Made>(std::move(bvh), input);
+std::unique_ptr<Structure> make(Bvh bvh, const StructureInput& input) {
+  return std::make_unique<Made>(std::move(bvh), input);
 }
 
 template <ChildOrder kOrder, class BoxTest>
@@ -38,8 +44,7 @@ constexpr Maker kByBoxTest[] = {kMake<ChildOrder::entry, BoxRay>, kMake<ChildOrd
 
 }  // namespace
 
-std::unique_ptr<const Structure> make_bvh2_structure(Bvh bvh, const StructureInput& input,
-                                                     const OptionValues& options) {
+std::unique_ptr<Structure> make_bvh2_structure(Bvh bvh, const StructureInput& input, const OptionValues& options) {
   if (options.is_on("order") && options.is_on("box")) {
     throw Error(ErrorCode::invalid_option, "bvh2", "another box test goes with order=entry only");
   }

@@ -18,16 +18,21 @@ class Bvh2Structure : public Structure {
   const TraceTable& table() const override { return Tracer::table(); }
   const void* data() const override { return &tracer_; }
   size_t bytes() const override { return tracer_.layout.bytes(); }
-  uint64_t hash() const override { return hash_; }
+  uint64_t hash() const override { return hash_ ? *hash_ : tree_hash(make_bvh(tracer_.layout)); }
 
   std::optional<std::string> find_fault() const override {
     const Bvh bvh = make_bvh(tracer_.layout);
-    if (tree_hash(bvh) != hash_) return "it is not the tree that it was made from";
+    if (hash_ && tree_hash(bvh) != *hash_) return "it is not the tree that it was made from";
     return kerf::find_fault(bvh, tracer_.geometries, kLargestLeaf);
   }
 
   void visit_nodes(const std::function<void(const NodeView&)>& visit) const override {
     if (!tracer_.layout.is_empty()) visit_child(tracer_.layout.root, 0, visit);
+  }
+
+  RefitOutcome refit(const Fragments& fragments) override {
+    hash_.reset();
+    return kerf::refit(tracer_.layout, {fragments, tracer_.layout.slots, tracer_.geometries});
   }
 
  protected:
@@ -45,7 +50,7 @@ class Bvh2Structure : public Structure {
     for (const Bvh2Child& below : tracer_.layout.nodes[child.first].child) visit_child(below, depth + 1, visit);
   }
 
-  uint64_t hash_;
+  std::optional<uint64_t> hash_;  ///< of the tree as it was built; none once it was refitted
   Tracer tracer_;
 };
 

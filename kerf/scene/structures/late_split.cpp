@@ -35,15 +35,15 @@ class LateSplitStructure : public Structure {
 
 }  // namespace
 
-std::unique_ptr<const Structure> make_late_split_structure(Bvh bvh, const StructureInput& input,
-                                                           const OptionValues& options) {
+std::unique_ptr<Structure> make_late_split_structure(Bvh bvh, const StructureInput& input,
+                                                     const OptionValues& options) {
   if (options.is_set("budget") && (options.is_set("sa_max") || options.is_set("cap"))) {
     throw Error(ErrorCode::invalid_option, "late_split", "budget replaces sa_max and cap: give one or the other");
   }
   const EarlySplit limits = options.is_set("budget") ? EarlySplit::with_budget(options["budget"])
                                                      : EarlySplit{options["sa_max"], options["cap"]};
   LateSplitBvh tree = build_late_split(bvh, geometry_clipper(input.geometries), limits, input.limit);
-  return std::make_unique<const LateSplitStructure>(std::move(tree), input.geometries, options.is_on("restore"));
+  return std::make_unique<LateSplitStructure>(std::move(tree), input.geometries, options.is_on("restore"));
 }
 
 }  // namespace kerf

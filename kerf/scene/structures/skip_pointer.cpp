@@ -16,7 +16,11 @@ class SkipPointerStructure : public Structure {
   const TraceTable& table() const override { return skip_pointer_table(); }
   const void* data() const override { return &tracer_; }
   size_t bytes() const override { return tracer_.layout.bytes(); }
-  uint64_t hash() const override { return hash_; }
+  uint64_t hash() const override {
+    if (hash_) return *hash_;
+    const std::optional<Bvh> bvh = make_bvh(tracer_.layout);
+    return bvh ? tree_hash(*bvh) : 0;
+  }
 
   std::optional<std::string> find_fault() const override {
     return kerf::find_fault(tracer_.layout, tracer_.geometries, kLargestLeaf);
@@ -34,19 +38,23 @@ class SkipPointerStructure : public Structure {
     }
   }
 
+  RefitOutcome refit(const Fragments& fragments) override {
+    hash_.reset();
+    return kerf::refit(tracer_.layout, {fragments, tracer_.layout.slots, tracer_.geometries});
+  }
+
  private:
   static constexpr uint32_t kLargestLeaf = 255;  // the most that a builder's option `leaf` allows
 
-  uint64_t hash_;
+  std::optional<uint64_t> hash_;  ///< of the tree as it was built; none once it was refitted
   SkipPointerTracer tracer_;
 };
 
 }  // namespace
 
-std::unique_ptr<const Structure> make_skip_pointer_structure(Bvh bvh, const StructureInput& input,
-                                                             const OptionValues&) {
+std::unique_ptr<Structure> make_skip_pointer_structure(Bvh bvh, const StructureInput& input, const OptionValues&) {
   input.limit.check(bvh.bytes());
-  return std::make_unique<const SkipPointerStructure>(std::move(bvh), input);
+  return std::make_unique<SkipPointerStructure>(std::move(bvh), input);
 }
 
 }  // namespace kerf
