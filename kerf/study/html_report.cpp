@@ -11,6 +11,7 @@
 #include "kerf/study/report/page.h"
 #include "kerf/study/report/results_table.h"
 #include "kerf/study/report/row_style.h"
+#include "kerf/study/report/splitting_figures.h"
 #include "kerf/study/report/summary.h"
 
 namespace kerf {
@@ -76,6 +77,31 @@ void write_group(Markup& out, const ResultGroup& group, const RowNumbers& number
   write_scene_charts(out, group.results, numbers, id);
 }
 
+/// How far automatic splitting went in this scene, and why; a row has one choice for all kinds of rays.
+void write_choices(Markup& out, const StudyReport& report, const std::string& scene, const RowNumbers& numbers,
+                   const std::string& id) {
+  std::vector<const StudyResult*> chosen;
+  for (const StudyResult& result : report.results) {
+    const bool is_known =
+        std::any_of(chosen.begin(), chosen.end(), [&](const auto* r) { return r->row == result.row; });
+    if (result.scene == scene && result.finished && result.choice && !is_known) chosen.push_back(&result);
+  }
+  if (chosen.empty()) return;
+  out.element("h3", "How far automatic splitting went");
+  for (const StudyResult* result : chosen) {
+    out.open("p");
+    write_name(out, result->row);
+    out.text(": " + result->choice->reason + ".");
+    out.close();
+  }
+  out.open("div", {{"class", "charts"}});
+  for (const StudyResult* result : chosen) {
+    write_choice_chart(out, *result->choice, fmt::format("{}-choice-{}", id, numbers.of(result->row)));
+  }
+  out.close();
+  out.line();
+}
+
 void write_scene(Markup& out, const StudyReport& report, const std::string& scene,
                  const std::vector<ResultGroup>& groups, const RowNumbers& numbers, const std::string& id) {
   out.open("section", {{"id", id}});
@@ -88,6 +114,7 @@ void write_scene(Markup& out, const StudyReport& report, const std::string& scen
   for (const ResultGroup& group : groups) {
     if (group.scene == scene) write_group(out, group, numbers, fmt::format("{}-{}", id, ++count));
   }
+  write_choices(out, report, scene, numbers, id);
   out.close();
   out.line();
 }

@@ -132,7 +132,10 @@ Finding judge_times(const SplittingScene& scene) {
       kind = scene.kinds[k];
     }
     if (!worst) return not_measured("there are no rays");
-    return at_least(worst->upper, kLeastSpeed, fmt::format("{:.3f} to {:.3f} ({})", worst->lower, worst->upper, kind));
+    const bool is_open = worst->lower < kLeastSpeed && worst->upper >= kLeastSpeed;
+    return at_least(worst->upper, kLeastSpeed,
+                    fmt::format("{:.3f} to {:.3f} ({}){}", worst->lower, worst->upper, kind,
+                                is_open ? ": slower is not excluded" : ""));
   });
 }
 

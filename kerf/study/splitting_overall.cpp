@@ -42,7 +42,9 @@ std::string worst_text(const Column& column) {
   size_t scene = 0;
   for (size_t i = 0; i < column.verdicts.size(); ++i) {
     const GoalVerdict* verdict = column.verdicts[i];
-    const bool is_judged = verdict->state == GoalState::reached || verdict->state == GoalState::missed;
+    // Of goals without a number only misses are worth a word.
+    const bool is_judged =
+        verdict->state == GoalState::missed || (verdict->state == GoalState::reached && !std::isnan(verdict->measured));
     if (!is_judged || (worst != nullptr && !(verdict->slack < worst->slack))) continue;
     worst = verdict;
     scene = i;

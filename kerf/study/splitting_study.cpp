@@ -28,6 +28,15 @@ constexpr Variant kVariants[] = {
 /// Until builds report their peak.
 std::optional<size_t> peak_bytes_of(const BuildReport& /*report*/) { return std::nullopt; }
 
+bool is_in_menu(const std::string& pipeline) {
+  try {
+    parse_pipeline(pipeline);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 class SplittingStudy {
  public:
   SplittingStudy(const StudyScene& scene, const std::string& turn, const SplittingOptions& options)
@@ -38,7 +47,7 @@ class SplittingStudy {
     for (const SplittingRowEntry& entry : splitting_rows()) add_row(entry.role, std::string(entry.pipeline), 0);
     for (const double budget : splitting_budgets()) add_row(SplittingRole::budget, budget_pipeline(budget), budget);
     steps_ = static_cast<double>(2 * measured_.size() + static_cast<size_t>(options.repeat) * timed().size() +
-                                 std::size(kVariants) + 2 + 2 * std::size(kThreads));
+                                 std::size(kVariants) + 2 + (options.with_threads ? 3 * std::size(kThreads) : 0));
   }
 
   SplittingScene run() {
@@ -95,7 +104,11 @@ class SplittingStudy {
     for (size_t i = 0; i < measured_.size(); ++i) {
       MeasuredRow& row = measured_[i];
       if (!tell("build " + row.pipeline)) return;
-      measure_.build(row);
+      if (is_in_menu(row.pipeline)) {
+        measure_.build(row);
+      } else {
+        row.give_up("it is not in the menu of this build");
+      }
       done_ += 1;
       if (!tell("count " + row.pipeline)) return;
       if (row.scene) measure_.count(row, rays_);

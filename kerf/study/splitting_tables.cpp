@@ -56,7 +56,7 @@ std::string row_line(const SplittingScene& scene, const SplittingRow& row) {
                        kKindWidth);
   }
   const SplittingRow* plain = scene.row(Role::plain);
-  const std::string speed = plain != nullptr ? speed_text(paired_speeds(scene, *plain, row)) : "";
+  const std::string speed = plain != nullptr && plain != &row ? speed_text(paired_speeds(scene, *plain, row)) : "";
   return text + (speed.empty() ? "" : "  " + speed) + "\n";
 }
 

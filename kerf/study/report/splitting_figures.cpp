@@ -18,20 +18,19 @@ using Role = SplittingRole;
 /// What is marked in the charts, by colour and marker; the sweep is drawn as a line.
 constexpr Role kMarked[] = {Role::automatic, Role::spatial_split, Role::balanced,
                             Role::best,      Role::fast,          Role::embree_high};
-constexpr size_t kSweepNumber = std::size(kMarked) + 1, kPlainNumber = kSweepNumber + 1;
+constexpr size_t kSweepNumber = std::size(kMarked) + 1;
 
 size_t number_of(Role role) {
   for (size_t i = 0; i < std::size(kMarked); ++i) {
     if (kMarked[i] == role) return i + 1;
   }
-  return role == Role::budget ? kSweepNumber : kPlainNumber;
+  return kSweepNumber;
 }
 
 std::vector<std::string> key_names(std::string sweep) {
   std::vector<std::string> names;
   for (const Role role : kMarked) names.emplace_back(splitting_row(role).name);
   names.push_back(std::move(sweep));
-  names.emplace_back(splitting_row(Role::plain).name);
   return names;
 }
 
@@ -89,10 +88,19 @@ std::vector<size_t> numbers_in(std::span<const SplittingScene> scenes) {
   return numbers;
 }
 
-void write_key_panel(Markup& out, std::span<const SplittingScene> scenes, std::string sweep, bool lines) {
+void write_key_panel(Markup& out, std::span<const SplittingScene> scenes, const std::string& sweep, bool lines) {
+  const std::vector<std::string> names = key_names(sweep);
   out.open("div", {{"class", "chart key-panel"}});
-  write_key(out, numbers_in(scenes), key_names(std::move(sweep)), lines);
+  out.open("ul", {{"class", "key"}});
+  for (const size_t number : numbers_in(scenes)) {
+    out.open("li", {{"data-row", std::to_string(number)}});
+    write_key_mark(out, number, lines && number == kSweepNumber);
+    out.text(names[number - 1]);
+    out.close();
+  }
   out.close();
+  out.close();
+  out.line();
 }
 
 }  // namespace
@@ -100,6 +108,7 @@ void write_key_panel(Markup& out, std::span<const SplittingScene> scenes, std::s
 void write_choice_chart(Markup& out, const SplitChoice& choice, const std::string& id) {
   XyChart chart{id, "Why auto stopped: predicted cost", "references per primitive R", true};
   chart.x_text = chart.y_text = number_tick;
+  chart.y_kind = AxisKind::linear;
   chart.x_values = {1};
   XySeries curve{1, "", {}};
   for (const SplitChoice::Step& step : choice.curve) {
