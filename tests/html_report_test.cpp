@@ -63,6 +63,14 @@ TEST(HtmlReportTest, LinksLeadSomewhereAndIdsAreUnique) {
   }
 }
 
+TEST(HtmlReportTest, ShowsOncePerSceneHowFarAutomaticSplittingWentAndWhy) {
+  const std::string page = html_report(sample_report());
+  const std::string section = section_of(page, "scene-1");
+  EXPECT_EQ(count_of(section, "How far automatic splitting went"), 1U);
+  EXPECT_EQ(count_of(section, "1 % more would gain &quot;too&quot; little."), 1U);
+  EXPECT_EQ(count_of(section, ">chosen<"), 1U);
+}
+
 TEST(HtmlReportTest, HasEveryRowOfEveryScene) {
   const StudyReport report = sample_report();
   const std::string page = html_report(report);

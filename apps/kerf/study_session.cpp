@@ -86,10 +86,11 @@ StudyScene read_study_scene(const StudyArguments& a, const std::string& input, d
   return {std::filesystem::path(input).stem().string(), std::move(scene.description), scene.camera};
 }
 
-StudyScene turned_scene(StudyScene scene, const std::string& name) {
-  if (name.empty() || name == "straight") return scene;
-  const Transform turn = turn_by_name(name);
-  return {scene.name + " turned " + name, turned(std::move(scene.description), turn), turned(scene.camera, turn)};
+StudyScene turned_scene(StudyScene scene, const std::string& turn) {
+  if (turn.empty() || turn == "straight") return scene;
+  const Transform transform = turn_by_name(turn);
+  return {scene.name + " turned " + turn, turned(std::move(scene.description), transform),
+          turned(scene.camera, transform)};
 }
 
 StudySession::StudySession(const StudyArguments& a) : a_(a), bar_(a.quiet) {

@@ -84,6 +84,7 @@ std::vector<double> paired_speeds(const SplittingScene& scene, const SplittingRo
   std::vector<double> speeds;
   for (size_t i = 0; i < runs; ++i) {
     std::vector<double> run;
+    run.reserve(kinds.size());
     for (const auto& kind : kinds) run.push_back(kind[i]);
     speeds.push_back(geometric_mean(run));
   }
