@@ -102,7 +102,7 @@ const Fault kFaults[] = {
     {"win",
      [](auto& s) {
        s.name = "sponza";
-       s.turn = "x";
+       s.turn = "xyz";
      }},
     {"win",
      [](auto& s) {  // fast enough with too many references

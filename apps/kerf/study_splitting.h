@@ -11,7 +11,7 @@ namespace kerf::app {
 
 inline constexpr const char* kSplittingSize = "150x100";
 inline constexpr const char* kSplittingRays = "primary,shadow,diffuse";
-inline constexpr const char* kSplittingTurns = "straight,x,y,z";
+inline constexpr const char* kSplittingTurns = "straight,x,y,z,xyz";
 inline constexpr int kSplittingRepeat = 15;
 
 /// Finds mistakes in the words of kerf study --splitting. Throws Error (invalid_option).
