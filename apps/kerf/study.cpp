@@ -118,9 +118,11 @@ void add_options(CLI::App& command, StudyArguments& a) {
                      fmt::format("Turns the scene by 30 degrees about x, y, z or all three: xyz; with --splitting a "
                                  "list (default: {})",
                                  kSplittingTurns));
-  command.add_flag("--splitting", a.is_splitting,
-                   "What automatic splitting does to each scene, straight and turned: beside no splitting, a sweep of "
-                   "budgets, presets and splits inside the build; and which goals it reaches");
+  command.add_flag(
+      "--splitting", a.is_splitting,
+      "What automatic splitting does to each scene, straight and turned: beside no splitting, a sweep of "
+      "budgets, presets and splits inside the build; and which goals it reaches. A hundred thousand triangles "
+      "take some minutes");
   command.add_flag("--no-determinism", a.no_determinism,
                    "With --splitting: do not build again with 1, 2 and 7 threads to compare the trees");
   command.add_flag("--paper", a.is_paper, "The table of Ernst and Greiner 2007: its scenes or stand-ins, and its rows");

@@ -85,23 +85,31 @@ void RowMeasure::count(MeasuredRow& row, std::span<const StudyRays> rays) const 
 }
 
 void RowMeasure::time(MeasuredRow& row, std::span<const StudyRays> rays) const {
+  const Clock::time_point start = Clock::now();
+  for (size_t k = 0; k < rays.size() && row.scene != nullptr; ++k) time_since(start, row, rays, k);
+}
+
+void RowMeasure::time(MeasuredRow& row, std::span<const StudyRays> rays, size_t kind) const {
+  time_since(Clock::now(), row, rays, kind);
+}
+
+/// `start`: when the time allowed began to pass.
+void RowMeasure::time_since(Clock::time_point start, MeasuredRow& row, std::span<const StudyRays> rays,
+                            size_t kind) const {
   std::vector<Hit> hits(kStretch);
   std::vector<uint8_t> any(kStretch);
-  const Clock::time_point all = Clock::now();
-  for (size_t k = 0; k < rays.size(); ++k) {
-    const StudyRays& kind = rays[k];
-    const Clock::time_point start = Clock::now();
-    const bool is_done = in_time(options_, kind.rays.size(), all, [&](size_t begin, size_t end) {
-      const std::span<const Ray> some = std::span(kind.rays).subspan(begin, end - begin);
-      if (kind.any_hit) {
-        row.scene->any_hit(some, std::span(any).first(some.size()), 1);
-      } else {
-        row.scene->closest_hit(some, std::span(hits).first(some.size()), 1);
-      }
-    });
-    if (!is_done) return row.give_up(kTooLong);
-    row.traced[k].seconds.push_back(seconds_since(start));
-  }
+  const StudyRays& all = rays[kind];
+  const Clock::time_point begun = Clock::now();
+  const bool is_done = in_time(options_, all.rays.size(), start, [&](size_t begin, size_t end) {
+    const std::span<const Ray> some = std::span(all.rays).subspan(begin, end - begin);
+    if (all.any_hit) {
+      row.scene->any_hit(some, std::span(any).first(some.size()), 1);
+    } else {
+      row.scene->closest_hit(some, std::span(hits).first(some.size()), 1);
+    }
+  });
+  if (!is_done) return row.give_up(kTooLong);
+  row.traced[kind].seconds.push_back(seconds_since(begun));
 }
 
 void RowMeasure::time_build(MeasuredRow& row) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <limits>
 #include <memory>
 #include <span>
@@ -36,9 +37,10 @@ struct MeasuredRow {
 };
 
 struct MeasureOptions {
-  int threads = 0;                                                 ///< of builds
-  double limit_seconds = std::numeric_limits<double>::infinity();  ///< of one build, and of one run over all rays
-  size_t limit_bytes = static_cast<size_t>(-1);                    ///< of one build
+  int threads = 0;  ///< of builds
+  double limit_seconds =
+      std::numeric_limits<double>::infinity();   ///< of one build, and of what is done with rays at once
+  size_t limit_bytes = static_cast<size_t>(-1);  ///< of one build
   bool skip_invalid = false;
   const std::atomic<bool>* cancelled = nullptr;
 };
@@ -56,13 +58,17 @@ class RowMeasure {
   void build(MeasuredRow& row) const;
   /// The work of all rays, kind by kind.
   void count(MeasuredRow& row, std::span<const StudyRays> rays) const;
-  /// One more run over all rays, which were counted before.
+  /// One more run over all rays, which were counted before, or over those of one kind, by number.
   void time(MeasuredRow& row, std::span<const StudyRays> rays) const;
+  void time(MeasuredRow& row, std::span<const StudyRays> rays, size_t kind) const;
   /// One more sample of the build's time, if it is to be had.
   void time_build(MeasuredRow& row) const;
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   std::unique_ptr<Scene> built(const MeasuredRow& row) const;
+  void time_since(Clock::time_point start, MeasuredRow& row, std::span<const StudyRays> rays, size_t kind) const;
 
   const SceneDescription& scene_;
   const MeasureOptions& options_;

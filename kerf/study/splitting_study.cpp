@@ -146,20 +146,25 @@ class SplittingStudy {
     }
   }
 
-  /// The timed rows take turns in tracing, and as long as there is time for it in building.
+  /// The timed rows take turns with each kind of rays, every other run backwards, so that none always comes after the
+  /// same one; then in building, as long as there is time for it.
   void time_rows() {
+    std::vector<size_t> turns = timed();
     double seconds = 0;
-    for (const size_t i : timed()) seconds += measured_[i].scene ? measured_[i].builds.front().total : 0;
+    for (const size_t i : turns) seconds += measured_[i].scene ? measured_[i].builds.front().total : 0;
     for (int run = 0; run < options_.repeat; ++run) {
-      for (const size_t i : timed()) {
-        MeasuredRow& row = measured_[i];
-        if (!tell("time " + row.pipeline)) return;
-        done_ += 1;
-        if (!row.scene) continue;
-        measure_.time(row, rays_);
-        const bool has_time = run < kLeastBuilds || seconds * (run + 1) < kSecondsOfBuilding;
-        if (run > 0 && has_time && row.scene) measure_.time_build(row);
+      if (!tell(fmt::format("run {} of {}", run + 1, options_.repeat))) return;
+      for (size_t k = 0; k < rays_.size(); ++k) {
+        for (const size_t i : turns) {
+          if (measured_[i].scene) measure_.time(measured_[i], rays_, k);
+        }
       }
+      const bool has_time = run < kLeastBuilds || seconds * (run + 1) < kSecondsOfBuilding;
+      for (const size_t i : turns) {
+        if (run > 0 && has_time && measured_[i].scene && tell("build again")) measure_.time_build(measured_[i]);
+      }
+      std::reverse(turns.begin(), turns.end());
+      done_ += static_cast<double>(turns.size());
     }
   }
 
