@@ -216,6 +216,7 @@ double median_build(const SplittingRow& row) {
 }
 
 Finding judge_sbvh_build(const SplittingScene& scene) {
+  if (scene.triangles == 0) return not_measured("there is nothing to build");
   return with_rows(scene, {Role::spatial_split, Role::balanced}, [&](const auto& rows) {
     const double ratio = median_build(*rows[1]) / median_build(*rows[0]);
     return at_most(
