@@ -217,9 +217,9 @@ def test_splitting_counts_repeat_exactly():
 
 def test_an_interrupted_study_of_splitting_writes_what_is_finished(folder):
     write_slivers(folder / "many.obj", 20000)
-    process = subprocess.Popen([KERF, "study", "many.obj", "--splitting", "--size", "400x400", "--json", "out.json",
+    process = subprocess.Popen([KERF, "study", "many.obj", "--splitting", "--size", "60x40", "--json", "out.json",
                                 "--repeat", "1000"], stdout=subprocess.PIPE)
-    time.sleep(4)
+    time.sleep(5)
     process.send_signal(signal.SIGINT)
     assert process.wait(timeout=60) == 130
     scene, = json.load(open("out.json"))["scenes"]
