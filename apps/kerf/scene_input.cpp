@@ -15,15 +15,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json choice_json(const std::optional<SplitChoice>& choice) {
-  if (!choice) return {};
-  Json curve = Json::array();
-  for (const SplitChoice::Step& step : choice->curve) {
-    curve.push_back({{"references_per_primitive", step.references_per_primitive}, {"cost", step.cost}});
-  }
-  return {{"reason", choice->reason}, {"curve", curve}};
-}
-
 /// "X,Y,Z". One word, not three as CLI11 would have it: that takes what stands behind it too.
 Vec3d parse_vector(const char* option, const std::string& text) {
   Vec3d v;
@@ -89,6 +80,15 @@ std::string settled_structure(const SceneArguments& arguments, const SceneDescri
 }
 
 }  // namespace
+
+Json choice_json(const std::optional<SplitChoice>& choice) {
+  if (!choice) return {};
+  Json curve = Json::array();
+  for (const SplitChoice::Step& step : choice->curve) {
+    curve.push_back({{"references_per_primitive", step.references_per_primitive}, {"cost", step.cost}});
+  }
+  return {{"reason", choice->reason}, {"curve", curve}};
+}
 
 std::array<uint32_t, 2> parse_size(const std::string& text) {
   std::array<uint32_t, 2> size{};

@@ -43,6 +43,9 @@ RenderScene build_input(const SceneArguments& arguments, SceneInput& input);
 
 nlohmann::ordered_json report_json(const BuildReport& report);
 
+/// The curve and its reason; null for none.
+nlohmann::ordered_json choice_json(const std::optional<SplitChoice>& choice);
+
 /// A surface area limit: JSON has no number for infinity, nor for one that was chosen for each part of the scene.
 nlohmann::ordered_json limit_json(double sa_max);
 

@@ -9,6 +9,7 @@
 
 #include "apps/kerf/command.h"
 #include "apps/kerf/study_session.h"
+#include "apps/kerf/study_splitting.h"
 #include "kerf/base/error.h"
 #include "kerf/base/nearest_word.h"
 #include "kerf/scene/pipeline.h"
@@ -34,7 +35,9 @@ void check_scenes(const StudyArguments& a) {
   if (!a.is_paper && a.seeds) refuse("--seeds", "it is for --paper");
   if (a.growth.empty() && a.up_to) refuse("--up-to", "it is for --growth");
   if (!a.growth.empty()) check_model_name(a.growth);
-  if (!a.turn.empty()) turn_by_name(a.turn);
+  if (!a.turn.empty() && !a.is_splitting) turn_by_name(a.turn);
+  if (a.is_splitting && has_own_scenes) refuse("--splitting", fmt::format("it does not go with {}", own));
+  if (a.no_determinism && !a.is_splitting) refuse("--no-determinism", "it is for --splitting");
   for (const std::string& input : a.inputs) {
     if (!std::filesystem::exists(input)) throw Error(ErrorCode::file, input, "there is no such file");
   }
@@ -55,6 +58,7 @@ void check_rays(const StudyArguments& a) {
 void check_words(const StudyArguments& a) {
   check_scenes(a);
   check_rays(a);
+  if (a.is_splitting) check_splitting(a);
   if (!a.sweep.empty() && a.sweep != "sa_max") {
     const std::string_view names[] = {"sa_max"};
     refuse("--sweep", fmt::format("unknown option '{}'{}", a.sweep, suggestion(a.sweep, names)));
@@ -69,10 +73,10 @@ void check_words(const StudyArguments& a) {
   if (to_output > 1) refuse("-", "standard output can take one file only");
 }
 
-int run_study(const StudyArguments& a, const std::string& command_line) {
-  check_words(a);
+template <class Session>
+int run_session(const StudyArguments& a, const std::string& command_line) {
   watch_interrupts();
-  StudySession session(a);
+  Session session(a);
   try {
     session.run();
   } catch (...) {
@@ -82,6 +86,11 @@ int run_study(const StudyArguments& a, const std::string& command_line) {
   const bool is_complete = !interrupted();
   session.write(command_line);
   return is_complete ? kDone : kInterrupted;
+}
+
+int run_study(const StudyArguments& a, const std::string& command_line) {
+  check_words(a);
+  return a.is_splitting ? run_session<SplittingSession>(a, command_line) : run_session<StudySession>(a, command_line);
 }
 
 /// Above 0; infinity is allowed, which CLI11's own check refuses.
@@ -97,10 +106,25 @@ void add_options(CLI::App& command, StudyArguments& a) {
   command.add_option(
       "--rows", a.rows,
       fmt::format("Pipelines to compare, separated by commas, or all; see kerf list (default: {})", kStudyRows));
-  command.add_option("--rays", a.rays, "Kinds of rays: primary, shadow, ambient_occlusion, diffuse (default: primary)");
+  command.add_option("--rays", a.rays,
+                     fmt::format("Kinds of rays: primary, shadow, ambient_occlusion, diffuse (default: primary; with "
+                                 "--splitting: {})",
+                                 kSplittingRays));
   command.add_option("--size", a.size,
-                     fmt::format("Width and height of the picture whose rays are traced (default: {})", kStudySize));
-  command.add_option("--turn", a.turn, "Turns the scene by 30 degrees about x, y, z or all three: xyz");
+                     fmt::format("Width and height of the picture whose rays are traced (default: {}; with "
+                                 "--splitting: {})",
+                                 kStudySize, kSplittingSize));
+  command.add_option("--turn", a.turn,
+                     fmt::format("Turns the scene by 30 degrees about x, y, z or all three: xyz; with --splitting a "
+                                 "list (default: {})",
+                                 kSplittingTurns));
+  command.add_flag(
+      "--splitting", a.is_splitting,
+      "What automatic splitting does to each scene, straight and turned: beside no splitting, a sweep of "
+      "budgets, presets and splits inside the build; and which goals it reaches. A hundred thousand triangles "
+      "take some minutes");
+  command.add_flag("--no-determinism", a.no_determinism,
+                   "With --splitting: do not build again with 1, 2 and 7 threads to compare the trees");
   command.add_flag("--paper", a.is_paper, "The table of Ernst and Greiner 2007: its scenes or stand-ins, and its rows");
   command.add_option("--seeds", a.seeds, "With --paper: how many plants (default: 1)")->check(CLI::Range(1, 100));
   command.add_option("--sweep", a.sweep, "sa_max: a row for each of a dozen surface area limits");
@@ -112,9 +136,11 @@ void add_options(CLI::App& command, StudyArguments& a) {
   command.add_option("--threads", a.threads, "Threads that build; 0: all. Rays are always traced on one")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
-  command.add_option("--repeat", a.repeat, "Timed runs of each row, in turn with the others")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
+  command
+      .add_option("--repeat", a.repeat,
+                  fmt::format("Timed runs of each row, in turn with the others (default: {}; with --splitting: {})",
+                              kStudyRepeat, kSplittingRepeat))
+      ->check(CLI::Range(1, 1000));
   command.add_option("--limit-seconds", a.limit_seconds, "Give up a row whose build or whose rays take longer")
       ->check(positive);
   command.add_option("--limit-gigabytes", a.limit_gigabytes, "Give up a row that needs more memory")
@@ -137,6 +163,7 @@ void add_study(CLI::App& app, std::function<int()>& run) {
   command->footer(
       "Examples: kerf study hall.ply --rows 'binned_sah,early_split(auto)+binned_sah,kd_sah' --html hall.html\n"
       "          kerf study hall.ply --sweep sa_max --rays primary,diffuse --json curve.json\n"
+      "          kerf study hall.ply --splitting --html splitting.html\n"
       "          kerf study --paper --html paper.html\n"
       "R: references per triangle; T_build: seconds; N_node, N_tri: nodes and triangle tests per ray; T_ray: seconds\n"
       "for all rays on one thread; S: how many times as fast as the first row that finished.");
@@ -147,12 +174,14 @@ void add_study(CLI::App& app, std::function<int()>& run) {
     std::string line = "kerf study";
     for (const std::string& input : a->inputs) line += " " + input;
     if (a->is_paper) line += " --paper";
+    if (a->is_splitting) line += " --splitting";
     if (!a->rows.empty()) line += " --rows '" + a->rows + "'";
     if (!a->growth.empty()) line += fmt::format(" --growth {} --up-to {:g}", a->growth, a->up_to.value_or(kStudyUpTo));
     if (!a->sweep.empty()) line += " --sweep " + a->sweep;
     if (!a->rays.empty()) line += " --rays " + a->rays;
     if (!a->size.empty()) line += " --size " + a->size;
     if (!a->turn.empty()) line += " --turn " + a->turn;
+    if (a->repeat) line += fmt::format(" --repeat {}", *a->repeat);
     run = [a, line] { return run_study(*a, line); };
   });
 }

@@ -18,6 +18,15 @@
 namespace kerf::app {
 namespace {
 
+std::vector<PaperStudyRow> plain_rows(const std::vector<std::string>& pipelines) {
+  std::vector<PaperStudyRow> rows;
+  rows.reserve(pipelines.size());
+  for (const std::string& row : pipelines) rows.push_back({row, {}});
+  return rows;
+}
+
+}  // namespace
+
 std::vector<std::string> words_of(const std::string& text) {
   std::vector<std::string> words;
   for (size_t begin = 0; begin <= text.size();) {
@@ -27,21 +36,6 @@ std::vector<std::string> words_of(const std::string& text) {
   }
   return words;
 }
-
-std::vector<PaperStudyRow> plain_rows(const std::vector<std::string>& pipelines) {
-  std::vector<PaperStudyRow> rows;
-  rows.reserve(pipelines.size());
-  for (const std::string& row : pipelines) rows.push_back({row, {}});
-  return rows;
-}
-
-StudyScene turned_scene(StudyScene scene, const std::string& name) {
-  if (name.empty() || name == "straight") return scene;
-  const Transform turn = turn_by_name(name);
-  return {scene.name + " turned " + name, turned(std::move(scene.description), turn), turned(scene.camera, turn)};
-}
-
-}  // namespace
 
 std::vector<RayKind> parse_kinds(const std::string& text) {
   std::vector<RayKind> kinds;
@@ -74,19 +68,39 @@ std::vector<std::string> rows_of(const std::string& text) {
   return rows;
 }
 
+MeasureOptions measure_options(const StudyArguments& a) {
+  MeasureOptions options;
+  options.threads = a.threads;
+  options.limit_seconds = a.limit_seconds;
+  const double bytes = a.limit_gigabytes * 1e9;
+  if (bytes < 1e18) options.limit_bytes = static_cast<size_t>(bytes);  // else none
+  options.skip_invalid = a.skip_invalid;
+  options.cancelled = interrupt_flag();
+  return options;
+}
+
+StudyScene read_study_scene(const StudyArguments& a, const std::string& input, double aspect) {
+  SceneArguments one = a;
+  one.input = input;
+  SceneInput scene = read_input(one, aspect);
+  return {std::filesystem::path(input).stem().string(), std::move(scene.description), scene.camera};
+}
+
+StudyScene turned_scene(StudyScene scene, const std::string& turn) {
+  if (turn.empty() || turn == "straight") return scene;
+  const Transform transform = turn_by_name(turn);
+  return {scene.name + " turned " + turn, turned(std::move(scene.description), transform),
+          turned(scene.camera, transform)};
+}
+
 StudySession::StudySession(const StudyArguments& a) : a_(a), bar_(a.quiet) {
   const auto [width, height] = parse_size(a.size.empty() ? kStudySize : a.size);
   options_.width = width;
   options_.height = height;
   options_.kinds = parse_kinds(a.rays.empty() ? "primary" : a.rays);
-  options_.threads = a.threads;
-  options_.repeat = a.repeat;
-  options_.limit_seconds = a.limit_seconds;
-  const double bytes = a.limit_gigabytes * 1e9;
-  if (bytes < 1e18) options_.limit_bytes = static_cast<size_t>(bytes);  // else none
-  options_.skip_invalid = a.skip_invalid;
+  options_.repeat = a.repeat.value_or(kStudyRepeat);
+  static_cast<MeasureOptions&>(options_) = measure_options(a);
   options_.with_overlap = !a.no_overlap;
-  options_.cancelled = interrupt_flag();
   options_.progress = [this](double done, std::string_view what) {
     return bar_((static_cast<double>(scene_) + done) / static_cast<double>(scenes_), what);
   };
@@ -134,13 +148,6 @@ void StudySession::load_or_save(const StudyScene& scene) {
   options_.loaded = rays_;
 }
 
-StudyScene StudySession::read(const std::string& input) const {
-  SceneArguments one = a_;
-  one.input = input;
-  SceneInput scene = read_input(one, static_cast<double>(options_.width) / options_.height);
-  return {std::filesystem::path(input).stem().string(), std::move(scene.description), scene.camera};
-}
-
 void StudySession::study_paper() {
   std::vector<std::string> folders{"scenes/real"};
   if (const char* given = std::getenv("KERF_SCENES"); given != nullptr && *given != '\0') {
@@ -165,7 +172,8 @@ void StudySession::study_inputs() {
   scenes_ = a_.inputs.size();
   for (const std::string& input : a_.inputs) {
     if (interrupted()) break;
-    const StudyScene scene = turned_scene(read(input), a_.turn);
+    const StudyScene scene =
+        turned_scene(read_study_scene(a_, input, static_cast<double>(options_.width) / options_.height), a_.turn);
     add(scene, plain_rows(!a_.sweep.empty() ? sweep_rows(scene.description)
                                             : rows_of(a_.rows.empty() ? kStudyRows : a_.rows)));
   }

@@ -8,9 +8,10 @@
 #include "kerf/study/report/figures.h"
 #include "kerf/study/report/markup.h"
 #include "kerf/study/report/number_text.h"
-#include "kerf/study/report/page_style.h"
+#include "kerf/study/report/page.h"
 #include "kerf/study/report/results_table.h"
 #include "kerf/study/report/row_style.h"
+#include "kerf/study/report/splitting_figures.h"
 #include "kerf/study/report/summary.h"
 
 namespace kerf {
@@ -18,15 +19,7 @@ using namespace report;
 
 namespace {
 
-// Nothing may be fetched, whatever a name holds.
-constexpr std::string_view kPolicy =
-    "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
 constexpr std::string_view kNoTitle = "Study of ray tracing structures";
-
-/// A part of the page that the contents name.
-struct Section {
-  std::string id, title;
-};
 
 std::string or_else(const std::string& text, std::string_view otherwise) {
   return text.empty() ? std::string(otherwise) : text;
@@ -45,54 +38,14 @@ std::vector<std::string> scene_names(const StudyReport& report) {
 
 std::string shown_scene(const std::string& scene) { return or_else(scene, "Scene without a name"); }
 
-std::vector<Section> sections(const StudyReport& report, const std::vector<std::string>& scenes, bool overview) {
-  std::vector<Section> found;
+std::vector<PageSection> sections(const StudyReport& report, const std::vector<std::string>& scenes, bool overview) {
+  std::vector<PageSection> found;
   if (overview) found.push_back({"overview", "At a glance"});
   for (size_t i = 0; i < scenes.size(); ++i) found.push_back({fmt::format("scene-{}", i + 1), shown_scene(scenes[i])});
   if (!report.sweep.empty()) found.push_back({"sweep", "How much to split"});
   if (!report.growth.empty()) found.push_back({"growth", "The cost of growth"});
   found.push_back({"legend", "What the columns mean"});
   return found;
-}
-
-void write_beginning(Markup& out, const StudyReport& report) {
-  const std::string title = or_else(report.title, kNoTitle);
-  out.raw("<!DOCTYPE html>\n");
-  out.open("html", {{"lang", "en"}});
-  out.open("head");
-  out.leaf("meta", {{"charset", "utf-8"}});
-  out.leaf("meta", {{"http-equiv", "Content-Security-Policy"}, {"content", kPolicy}});
-  out.leaf("meta", {{"name", "viewport"}, {"content", "width=device-width, initial-scale=1"}});
-  out.leaf("meta", {{"name", "color-scheme"}, {"content", "light dark"}});
-  out.element("title", title);
-  out.open("style");
-  out.raw(page_style());
-  out.close();
-  out.close();
-  out.line();
-}
-
-void write_header(Markup& out, const StudyReport& report, const std::vector<Section>& contents) {
-  out.open("header");
-  out.element("h1", or_else(report.title, kNoTitle));
-  if (!report.machine.empty()) out.element("p", {{"class", "made"}}, report.machine);
-  if (!report.command.empty()) out.element("code", {{"class", "command"}}, report.command);
-  if (!report.notes.empty()) {
-    out.open("ul", {{"class", "notes"}});
-    for (const std::string& note : report.notes) out.element("li", note);
-    out.close();
-  }
-  out.open("nav", {{"aria-label", "Contents"}});
-  out.open("ul");
-  for (const Section& section : contents) {
-    out.open("li");
-    out.element("a", {{"href", "#" + section.id}}, section.title);
-    out.close();
-  }
-  out.close();
-  out.close();
-  out.close();
-  out.line();
 }
 
 void write_pictures(Markup& out, const StudyReport& report, const std::string& scene) {
@@ -114,14 +67,6 @@ void write_pictures(Markup& out, const StudyReport& report, const std::string& s
   out.line();
 }
 
-void write_heading(Markup& out, std::string_view tag, std::string_view text, const std::string& aside) {
-  out.open(tag);
-  out.text(text);
-  if (!aside.empty()) out.element("small", aside);
-  out.close();
-  out.line();
-}
-
 std::string rays_text(const ResultGroup& group) { return fmt::format("{} rays", or_else(group.rays, "unnamed")); }
 
 void write_group(Markup& out, const ResultGroup& group, const RowNumbers& numbers, const std::string& id) {
@@ -130,6 +75,31 @@ void write_group(Markup& out, const ResultGroup& group, const RowNumbers& number
   write_table(out, group.results, numbers, TableRows::pipelines,
               fmt::format("{}, {}", shown_scene(group.scene), rays_text(group)));
   write_scene_charts(out, group.results, numbers, id);
+}
+
+/// How far automatic splitting went in this scene, and why; a row has one choice for all kinds of rays.
+void write_choices(Markup& out, const StudyReport& report, const std::string& scene, const RowNumbers& numbers,
+                   const std::string& id) {
+  std::vector<const StudyResult*> chosen;
+  for (const StudyResult& result : report.results) {
+    const bool is_known =
+        std::any_of(chosen.begin(), chosen.end(), [&](const auto* r) { return r->row == result.row; });
+    if (result.scene == scene && result.finished && result.choice && !is_known) chosen.push_back(&result);
+  }
+  if (chosen.empty()) return;
+  out.element("h3", "How far automatic splitting went");
+  for (const StudyResult* result : chosen) {
+    out.open("p");
+    write_name(out, result->row);
+    out.text(": " + result->choice->reason + ".");
+    out.close();
+  }
+  out.open("div", {{"class", "charts"}});
+  for (const StudyResult* result : chosen) {
+    write_choice_chart(out, *result->choice, fmt::format("{}-choice-{}", id, numbers.of(result->row)));
+  }
+  out.close();
+  out.line();
 }
 
 void write_scene(Markup& out, const StudyReport& report, const std::string& scene,
@@ -144,6 +114,7 @@ void write_scene(Markup& out, const StudyReport& report, const std::string& scen
   for (const ResultGroup& group : groups) {
     if (group.scene == scene) write_group(out, group, numbers, fmt::format("{}-{}", id, ++count));
   }
+  write_choices(out, report, scene, numbers, id);
   out.close();
   out.line();
 }
@@ -220,12 +191,8 @@ std::string html_report(const StudyReport& report) {
   const std::vector<ResultGroup> groups = grouped_results(report.results);
   const std::vector<std::string> scenes = scene_names(report);
   Markup out;
-  write_beginning(out, report);
-  out.open("body");
-  out.line();
-  write_header(out, report, sections(report, scenes, groups.size() > 1));
-  out.open("main");
-  out.line();
+  begin_page(out, {or_else(report.title, kNoTitle), report.machine, report.command, report.notes},
+             sections(report, scenes, groups.size() > 1));
   if (report.results.empty() && report.sweep.empty() && report.growth.empty()) {
     out.element("p", "This study has no results.");
   }
@@ -236,13 +203,7 @@ std::string html_report(const StudyReport& report) {
   write_sweep(out, report);
   write_growth(out, report, numbers);
   write_legend(out);
-  out.close();
-  out.open("script");
-  out.raw(page_script());
-  out.close();
-  out.close();
-  out.close();
-  out.line();
+  end_page(out);
   return out.take();
 }
 

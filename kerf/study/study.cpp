@@ -1,12 +1,9 @@
 #include "kerf/study/study.h"
 
 #include <algorithm>
-#include <chrono>
-#include <memory>
 #include <utility>
 
 #include "kerf/base/error.h"
-#include "kerf/render/render_scene.h"
 #include "kerf/scene/menu.h"
 #include "kerf/scene/pipeline.h"
 #include "kerf/study/end_point_overlap.h"
@@ -14,42 +11,13 @@
 namespace kerf {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr size_t kStretch = 4096;          // rays between two looks at the clock
 constexpr double kSecondsOfBuilding = 10;  // quick builds are timed as often as rays, slow ones as often as fit in this
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-Spread spread_of(std::vector<double> values) {
-  if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  const size_t n = values.size();
-  return {(values[(n - 1) / 2] + values[n / 2]) / 2, values.front(), values.back(), static_cast<int>(n)};
-}
-
 /// One row while it is measured.
-struct Row {
-  std::string pipeline;
-  std::unique_ptr<Scene> scene;  ///< none: not finished
-  std::string why_not;
-  BuildReport report;
-  std::vector<double> build_seconds;
+struct Row : MeasuredRow {
   std::optional<double> overlap;
 
-  /// Of each kind of rays.
-  struct Traced {
-    TraceCounts counts;
-    size_t hits = 0;
-    std::vector<double> seconds;
-  };
-  std::vector<Traced> traced;
-
   bool is_finished() const { return scene != nullptr; }
-  void give_up(const std::string& why) {
-    scene.reset();
-    why_not = why;
-  }
 };
 
 bool has_option(const MenuEntry& entry, std::string_view name) {
@@ -58,8 +26,9 @@ bool has_option(const MenuEntry& entry, std::string_view name) {
 
 class Study {
  public:
-  Study(const StudyScene& scene, const StudyOptions& options) : input_(scene), options_(options) {
-    for (const std::string& row : options.rows) rows_.push_back({parse_pipeline(row).text(), {}, {}, {}, {}, {}, {}});
+  Study(const StudyScene& scene, const StudyOptions& options)
+      : input_(scene), options_(options), measure_(scene.description, options) {
+    for (const std::string& row : options.rows) rows_.push_back({{parse_pipeline(row).text()}, {}});
   }
 
   std::vector<StudyResult> run() {
@@ -73,7 +42,7 @@ class Study {
     }
     for (Row& row : rows_) {
       if (!tell(row, "count")) break;
-      if (row.is_finished()) count(row);
+      if (row.is_finished()) measure_.count(row, rays_);
       done_ += static_cast<double>(kinds);
     }
     for (int run = 0; run < options_.repeat && !is_stopped_; ++run) {
@@ -105,110 +74,29 @@ class Study {
     return !is_stopped_;
   }
 
-  WorkLimit limit() const {
-    WorkLimit limit = WorkLimit::seconds(options_.limit_seconds);
-    limit.bytes = options_.limit_bytes;
-    limit.cancelled = options_.cancelled;
-    return limit;
-  }
-
-  std::unique_ptr<Scene> built(const Row& row) const {
-    return std::make_unique<Scene>(build_scene(input_.description, {.structure = row.pipeline,
-                                                                    .threads = options_.threads,
-                                                                    .skip_invalid = options_.skip_invalid,
-                                                                    .limit = limit()}));
-  }
-
-  void build(Row& row) {
-    try {
-      row.scene = built(row);
-      row.report = row.scene->report();
-      row.build_seconds.push_back(row.report.seconds.total);
-      if (row.report.bytes > options_.limit_bytes) {
-        row.give_up("it takes " + std::to_string(row.report.bytes) + " bytes");
-      } else if (options_.with_overlap) {
-        measure_overlap(row);
-      }
-    } catch (const Error& error) {
-      // What is wrong with the scene is wrong for all rows.
-      if (error.code() != ErrorCode::stopped && error.code() != ErrorCode::too_large &&
-          error.code() != ErrorCode::invalid_option) {
-        throw;
-      }
-      row.give_up(error.what());
-    } catch (const std::bad_alloc&) {
-      row.give_up("there is not enough memory");
-    }
+  void build(Row& row) const {
+    measure_.build(row);
+    if (row.is_finished() && options_.with_overlap) measure_overlap(row);
   }
 
   void measure_overlap(Row& row) const {
     try {
-      row.overlap = end_point_overlap(*row.scene, limit());
+      row.overlap = end_point_overlap(*row.scene, measure_.limit());
     } catch (const Error& error) {
       if (error.code() != ErrorCode::stopped) throw;
     }
   }
 
-  /// Calls trace(begin, end) for stretches of the rays until all are done; false when the time is over.
-  template <class F>
-  bool in_time(size_t count, Clock::time_point start, F&& trace) const {
-    for (size_t begin = 0; begin < count; begin += kStretch) {
-      trace(begin, std::min(begin + kStretch, count));
-      if (seconds_since(start) > options_.limit_seconds) return false;
-      if (options_.cancelled != nullptr && *options_.cancelled) return false;
-    }
-    return true;
-  }
-
-  void count(Row& row) const {
-    const Clock::time_point start = Clock::now();
-    const Scene& scene = *row.scene;
-    std::vector<Hit> hits(kStretch);
-    for (const StudyRays& kind : rays_) {
-      Row::Traced traced;
-      const bool is_done = in_time(kind.rays.size(), start, [&](size_t begin, size_t end) {
-        const std::span<const Ray> rays = std::span(kind.rays).subspan(begin, end - begin);
-        if (kind.any_hit) {
-          for (const Ray& ray : rays) traced.hits += scene.any_hit(ray, traced.counts) ? 1 : 0;
-          return;
-        }
-        scene.closest_hit(rays, std::span(hits).first(rays.size()), traced.counts);
-        for (size_t i = 0; i < rays.size(); ++i) traced.hits += hits[i] ? 1 : 0;
-      });
-      if (!is_done) return row.give_up("tracing its rays took more than the time allowed");
-      row.traced.push_back(std::move(traced));
-    }
-  }
-
   void time(Row& row, int run) const {
-    std::vector<Hit> hits(kStretch);
-    std::vector<uint8_t> any(kStretch);
-    const Clock::time_point all = Clock::now();
-    for (size_t k = 0; k < rays_.size(); ++k) {
-      const StudyRays& kind = rays_[k];
-      const Clock::time_point start = Clock::now();
-      const bool is_done = in_time(kind.rays.size(), all, [&](size_t begin, size_t end) {
-        const std::span<const Ray> rays = std::span(kind.rays).subspan(begin, end - begin);
-        if (kind.any_hit) {
-          row.scene->any_hit(rays, std::span(any).first(rays.size()), 1);
-        } else {
-          row.scene->closest_hit(rays, std::span(hits).first(rays.size()), 1);
-        }
-      });
-      if (!is_done) return row.give_up("tracing its rays took more than the time allowed");
-      row.traced[k].seconds.push_back(seconds_since(start));
-    }
-    const double first = row.build_seconds.front();
-    if (run > 0 && first * (run + 1) < kSecondsOfBuilding) time_build(row);
+    measure_.time(row, rays_);
+    if (!row.is_finished()) return;
+    const double first = row.builds.front().total;
+    if (run > 0 && first * (run + 1) < kSecondsOfBuilding) measure_.time_build(row);
   }
 
   std::vector<StudyResult> results() const {
     std::vector<StudyResult> all;
-    size_t triangles = 0;
-    for (const SceneObject& object : input_.description.objects) {
-      const auto* mesh = std::get_if<Mesh>(&object.shape);
-      triangles += mesh != nullptr ? mesh->triangles.size() : 1;
-    }
+    const size_t triangles = primitive_count(input_.description);
     for (size_t k = 0; k < rays_.size(); ++k) {
       for (const Row& row : rows_) {
         StudyResult result;
@@ -230,11 +118,13 @@ class Study {
   }
 
   void fill(StudyResult& result, const Row& row, size_t k) const {
-    const Row::Traced& traced = row.traced[k];
+    const MeasuredRow::Traced& traced = row.traced[k];
     const double rays = std::max(1.0, static_cast<double>(rays_[k].rays.size()));
     result.references_per_triangle = row.report.references_per_primitive;
     result.sa_max = row.report.sa_max;
-    result.build_seconds = spread_of(row.build_seconds);
+    std::vector<double> build_seconds;
+    for (const BuildReport::Seconds& seconds : row.builds) build_seconds.push_back(seconds.total);
+    result.build_seconds = spread_of(std::move(build_seconds));
     result.nodes_per_ray = static_cast<double>(traced.counts.nodes) / rays;
     result.triangles_per_ray = static_cast<double>(traced.counts.primitives) / rays;
     result.boxes_per_ray = static_cast<double>(traced.counts.boxes) / rays;
@@ -246,16 +136,7 @@ class Study {
     result.end_point_overlap = row.overlap;
     result.hits = traced.hits;
     result.tree_hash = row.report.tree_hash;
-  }
-
-  /// Another sample of the build's time, if it is to be had.
-  void time_build(Row& row) const {
-    try {
-      row.build_seconds.push_back(built(row)->report().seconds.total);
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::stopped) throw;
-    } catch (const std::bad_alloc&) {  // what is there is kept
-    }
+    result.choice = row.report.choice;
   }
 
   double speedup(const std::vector<double>& seconds, size_t k) const {
@@ -268,6 +149,7 @@ class Study {
 
   const StudyScene& input_;
   const StudyOptions& options_;
+  RowMeasure measure_;
   std::vector<Row> rows_;
   std::vector<StudyRays> made_;
   std::span<const StudyRays> rays_;

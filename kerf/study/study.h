@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -10,6 +9,9 @@
 #include <vector>
 
 #include "kerf/io/scene_description.h"
+#include "kerf/references/split_result.h"
+#include "kerf/study/row_measure.h"
+#include "kerf/study/spread.h"
 #include "kerf/study/study_rays.h"
 
 namespace kerf {
@@ -17,12 +19,6 @@ namespace kerf {
 /// What a paper printed for a row of its table.
 struct PaperRow {
   double references_per_triangle, build_seconds, nodes_per_ray, triangles_per_ray, trace_seconds, speedup;
-};
-
-/// A median with its spread.
-struct Spread {
-  double median = 0, least = 0, most = 0;
-  int count = 0;  ///< values that it is of
 };
 
 /// What one row of a study showed on one scene with one kind of rays: the columns of Table 1 of Ernst and Greiner 2007,
@@ -49,6 +45,7 @@ struct StudyResult {
   std::optional<double> end_point_overlap;  ///< none: not asked for
   size_t hits = 0;
   uint64_t tree_hash = 0;
+  std::optional<SplitChoice> choice;  ///< of automatic splitting: how far it went, and why
 
   std::optional<PaperRow> paper;  ///< the row that this one stands beside
 };
@@ -60,18 +57,13 @@ struct StudyScene {
   Camera camera;
 };
 
-struct StudyOptions {
+struct StudyOptions : MeasureOptions {
   std::vector<std::string> rows;  ///< pipelines; all are checked before any work is done
   uint32_t width = 1000, height = 1000;
   std::vector<RayKind> kinds{RayKind::primary};
-  int threads = 0;                                                 ///< of builds; rays are always traced on one
-  int repeat = 5;                                                  ///< timed runs of each row, in turn with the others
-  double limit_seconds = std::numeric_limits<double>::infinity();  ///< of one build, and of all runs of a row
-  size_t limit_bytes = static_cast<size_t>(-1);                    ///< of one build, as far as it tells before
-  bool skip_invalid = false;
+  int repeat = 5;  ///< timed runs of each row, in turn with the others
   bool with_overlap = true;
-  const std::atomic<bool>* cancelled = nullptr;  ///< becomes true when no more is wanted, for what takes long
-  std::span<const StudyRays> loaded;             ///< traced instead of rays from the camera
+  std::span<const StudyRays> loaded;  ///< traced instead of rays from the camera
   /// Called now and then with the share that is done and what is being done; returns false to stop.
   std::function<bool(double, std::string_view)> progress;
 };

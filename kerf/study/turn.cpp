@@ -52,4 +52,28 @@ SceneDescription turned(SceneDescription scene, const Transform& turn) {
   return scene;
 }
 
+Transform axes_exchanged() { return {{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}, {}}; }
+
+SceneDescription scaled(SceneDescription scene, double factor) {
+  const auto scale = [&](Vec3f& v) { v = to_float(to_double(v) * factor); };
+  for (SceneObject& object : scene.objects) {
+    if (auto* mesh = std::get_if<Mesh>(&object.shape)) {
+      for (Vec3f& vertex : mesh->vertices) scale(vertex);
+    } else if (auto* sphere = std::get_if<Sphere>(&object.shape)) {
+      scale(sphere->center);
+      sphere->radius = static_cast<float>(sphere->radius * factor);
+    } else {
+      auto& shape = std::get<Parallelogram>(object.shape);
+      scale(shape.corner);
+      scale(shape.u);
+      scale(shape.v);
+    }
+  }
+  if (scene.camera) {
+    scene.camera->eye = scene.camera->eye * factor;
+    scene.camera->look_at = scene.camera->look_at * factor;
+  }
+  return scene;
+}
+
 }  // namespace kerf

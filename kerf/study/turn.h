@@ -21,4 +21,10 @@ Mesh turned(Mesh mesh, const Transform& turn);
 /// Every object and the camera; textures and materials stay as they are.
 SceneDescription turned(SceneDescription scene, const Transform& turn);
 
+/// Turns x into y, y into z and z into x; every coordinate keeps its bits.
+Transform axes_exchanged();
+
+/// Everything as many times as large, the camera too.
+SceneDescription scaled(SceneDescription scene, double factor);
+
 }  // namespace kerf

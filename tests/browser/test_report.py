@@ -17,7 +17,7 @@ import pytest
 
 SAMPLE = os.environ.get("KERF_SAMPLE_REPORT", "")
 CHROMIUM = os.environ.get("KERF_CHROMIUM") or shutil.which("chromium") or ""
-KINDS = ["full", "empty", "one", "odd"]
+KINDS = ["full", "empty", "one", "odd", "splitting"]
 pytestmark = pytest.mark.skipif(not SAMPLE or not CHROMIUM, reason="no Chromium, or no program that writes reports")
 
 # Looks at the page from inside and leaves what it found as JSON in the element "probe".
@@ -169,13 +169,13 @@ def test_opens_without_a_word_and_without_network(look, kind, width):
 def test_has_all_tables_charts_and_pictures(look):
     found, _ = look("full", 1300)
     assert found["tables"] == 1 + 4 + 1 + 1  # overview, kinds of rays of scenes, sweep, growth
-    assert found["charts"] == 4 * 5 + 3 + 4
+    assert found["charts"] == 4 * 5 + 3 + 3 + 4  # with the curve of automatic splitting of each scene
     assert found["texts"] > 800
     assert [picture[:2] for picture in found["pictures"]] == [[True, 240]] * 4
     assert all("test data" in picture[2] for picture in found["pictures"])
 
 
-@pytest.mark.parametrize("kind", ["full", "one", "odd"])
+@pytest.mark.parametrize("kind", ["full", "one", "odd", "splitting"])
 @pytest.mark.parametrize("width", [1300, 390])
 def test_labels_neither_leave_charts_nor_cover_each_other(look, kind, width):
     found, _ = look(kind, width)
@@ -238,7 +238,7 @@ def test_is_whole_without_a_script(pages, profile, tmp_path):
     text = pages["full"].read_text(encoding="utf-8")
     page.write_text(text[:text.index("<script>")] + text[text.index("</script>") + 9:], encoding="utf-8")
     found, _ = probed(page, profile)
-    assert (found["tables"], found["charts"], found["buttons"]) == (7, 27, 0)
+    assert (found["tables"], found["charts"], found["buttons"]) == (7, 30, 0)
 
 
 @pytest.mark.parametrize("dark", [False, True])

@@ -1,12 +1,15 @@
 // Writes a report of invented figures for the browser: write_sample KIND FILE.
-// KIND: full, empty, one (a single row), odd (zeros, infinities, NaN, long and hostile names, nothing finished).
+// KIND: full, empty, one (a single row), odd (zeros, infinities, NaN, long and hostile names, nothing finished),
+// splitting (the report of a study of splitting).
 
 #include <cmath>
 #include <fstream>
 #include <iostream>
 #include <string>
 
+#include "kerf/study/splitting_report.h"
 #include "sample_report.h"
+#include "tests/support/splitting_sample.h"
 
 namespace {
 
@@ -45,6 +48,16 @@ StudyReport odd_report() {
   return report;
 }
 
+std::string splitting_page() {
+  std::vector<SplittingScene> scenes{kerf::test::made_splitting_scene(),
+                                     kerf::test::made_splitting_scene("a_scene_with_a_name_that_is_far_too_long")};
+  scenes[1].turn = "xyz";
+  for (SplittingRow& row : scenes[1].rows) row.finished = row.role != SplittingRole::balanced;
+  scenes[1].skipped = {"trees for 1, 2 and 7 threads: left out as asked"};
+  scenes[1].capped_references = 1.5;
+  return splitting_report({"Splitting", "kerf study hall.ply --splitting", "a machine", scenes});
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -56,12 +69,12 @@ int main(int argc, char** argv) {
     report.results = {sample_result("one", "binned_sah")};
   } else if (kind == "odd") {
     report = odd_report();
-  } else if (kind != "empty" || argc != 3) {
-    std::cerr << "usage: write_sample full|empty|one|odd FILE\n";
+  } else if ((kind != "empty" && kind != "splitting") || argc != 3) {
+    std::cerr << "usage: write_sample full|empty|one|odd|splitting FILE\n";
     return 2;
   }
   std::ofstream file(argv[2], std::ios::binary);
-  file << html_report(report);
+  file << (kind == "splitting" ? splitting_page() : html_report(report));
   file.close();
   return file ? 0 : 1;
 }

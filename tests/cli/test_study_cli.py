@@ -173,7 +173,70 @@ def test_growth_goes_by_tens_and_all_rows_are_everything_in_the_menu():
             assert any(entry["name"] in name for name in names), entry["name"]
 
 
+def test_splitting_measures_each_turn_and_judges_the_goals(folder):
+    assert kerf("make", "needles", "--triangles", "2000", "-o", "needles.ply", "--quiet").returncode == 0
+    result = kerf("study", "needles.ply", "--splitting", "--turn", "straight,x", "--size", "40x30", "--repeat", "6",
+                  "--rays", "primary,diffuse", "--json", "out.json", "--csv", "out.csv", "--html", "out.html")
+    assert result.returncode == 0, result.stderr
+    figures = json.load(open("out.json"))
+    assert [(scene["scene"], scene["turn"]) for scene in figures["scenes"]] == [("needles", "straight"), ("needles", "x")]
+    for scene in figures["scenes"]:
+        rows = {row["row"]: row for row in scene["rows"]}
+        assert sum(name.startswith("budget") for name in rows) >= 12
+        for name in ("plain", "auto", "SBVH", "budget 1.5"):
+            assert rows[name]["finished"], rows[name]
+        assert rows["plain"]["references_per_primitive"] == 1
+        assert rows["auto"]["split_choice"]["reason"] in result.stdout
+        visits = [ray["nodes_per_ray"] + ray["triangles_per_ray"] for ray in rows["auto"]["rays"]]
+        plain = [ray["nodes_per_ray"] + ray["triangles_per_ray"] for ray in rows["plain"]["rays"]]
+        assert [ray["visits_of_plain"] for ray in rows["auto"]["rays"]] == pytest.approx([v / p for v, p in zip(visits, plain)])
+        assert all(len(ray["trace_seconds"]) == 6 and len(ray["speed_interval"]) == 2 for ray in rows["auto"]["rays"])
+        assert all(not row["finished"] and row["why_not"] for row in rows.values() if "rays" not in row)
+        goals = {goal["goal"]: goal for goal in scene["goals"]}
+        assert goals["hits"]["state"] == goals["cap"]["state"] == "reached"
+        assert all(goal["state"] in ("reached", "missed", "not measured", "not asked") for goal in goals.values())
+        assert all(goal["text"] in result.stdout for goal in goals.values())
+    assert len(figures["goals"]) == len(figures["scenes"][0]["goals"])
+    lines = list(csv.DictReader(open("out.csv")))
+    assert len(lines) == sum(len(scene["rows"]) * 2 for scene in figures["scenes"])
+    page = open("out.html").read()
+    assert "Visits of all kinds of rays" in page and "needles turned x" in page
+
+
+def test_splitting_counts_repeat_exactly():
+    def counts(*more):
+        result = kerf("study", "slivers.obj", "--splitting", "--turn", "xyz", "--size", "32x24", "--repeat", "1", "--quiet",
+                      "--no-determinism", "--json", "-", *more)
+        assert result.returncode == 0, result.stderr
+        scene, = json.loads(result.stdout)["scenes"]
+        assert any("left out as asked" in sentence for sentence in scene["skipped"])
+        return [[(ray["nodes_per_ray"], ray["triangles_per_ray"], ray["hits"]) for ray in row.get("rays", [])]
+                for row in scene["rows"]]
+    assert counts() == counts("--threads", "1")
+
+
+def test_an_interrupted_study_of_splitting_writes_what_is_finished(folder):
+    write_slivers(folder / "many.obj", 20000)
+    process = subprocess.Popen([KERF, "study", "many.obj", "--splitting", "--size", "60x40", "--json", "out.json",
+                                "--repeat", "1000"], stdout=subprocess.PIPE)
+    time.sleep(5)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(timeout=60) == 130
+    scene, = json.load(open("out.json"))["scenes"]
+    assert all(row["finished"] or row["why_not"] for row in scene["rows"])
+    assert scene["goals"][0]["state"] in ("reached", "missed", "not measured")
+
+
 @pytest.mark.parametrize("words, sentence", [
+    (["--splitting"], "give a scene"),
+    (["slivers.obj", "--splitting", "--rows", "binned_sah"], "rows of its own"),
+    (["slivers.obj", "--splitting", "--sweep", "sa_max"], "sweep of its own"),
+    (["slivers.obj", "--splitting", "--turn", "x,yx"], "unknown turn 'yx'"),
+    (["slivers.obj", "--splitting", "--save-rays", "x.npy"], "--splitting"),
+    (["slivers.obj", "--splitting", "--no-overlap"], "no overlap"),
+    (["--splitting", "--paper"], "--paper"),
+    (["slivers.obj", "--turn", "x,y"], "unknown turn"),
+    (["slivers.obj", "--no-determinism"], "--splitting"),
     (["--growth", "soop"], "soup"),
     (["--growth", "soup", "--paper"], "--paper"),
     ([], "give a scene"),

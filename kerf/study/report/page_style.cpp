@@ -74,6 +74,11 @@ th .number { position: absolute; left: 0; width: 2.1em; text-align: right; }
 .unfinished { text-align: left; white-space: normal; color: var(--soft); font-style: italic; }
 .unfinished b { color: var(--warn); font-style: normal; }
 .none { color: var(--soft); }
+.state { text-align: left; } .state.missed { color: var(--warn); background: var(--warn-page); font-weight: 700; }
+td.said { text-align: left; white-space: normal; min-width: 14rem; } .bar-text { color: var(--soft); }
+table.goals thead th { text-align: left; } table.goals th[scope=row] { padding-left: .45rem; min-width: 11rem; }
+table.matrix { width: auto; } table.matrix thead th { min-width: 3.4rem; } table.matrix th, table.matrix td { padding: .34rem .3rem; font-size: .92em; }
+.chart.wide { max-width: 900px; }
 .up1 { background: var(--up1); } .up2 { background: var(--up2); } .up3 { background: var(--up3); font-weight: 700; }
 .down1 { background: var(--down1); } .down2 { background: var(--down2); }
 .mean { border-left: 2px solid var(--rule); }

@@ -77,16 +77,20 @@ void write_words(Markup& out, std::string_view name) {
   });
 }
 
+void write_key_mark(Markup& out, size_t number, bool line) {
+  out.open("svg", {{"viewBox", "0 0 34 14"}, {"width", "34"}, {"height", "14"}, {"aria-hidden", "true"}});
+  out.open("g", {{"class", color_class(number)}});
+  if (line) out.leaf("path", {{"class", "line"}, {"d", "M1 7H33"}, {"stroke-dasharray", dashes(number)}});
+  draw_marker(out, number, 17, 7, {});
+  out.close();
+  out.close();
+}
+
 void write_key(Markup& out, const std::vector<size_t>& numbers, const std::vector<std::string>& names, bool lines) {
   out.open("ul", {{"class", "key"}});
   for (const size_t number : numbers) {
     out.open("li", {{"data-row", std::to_string(number)}});
-    out.open("svg", {{"viewBox", "0 0 34 14"}, {"width", "34"}, {"height", "14"}, {"aria-hidden", "true"}});
-    out.open("g", {{"class", color_class(number)}});
-    if (lines) out.leaf("path", {{"class", "line"}, {"d", "M1 7H33"}, {"stroke-dasharray", dashes(number)}});
-    draw_marker(out, number, 17, 7, {});
-    out.close();
-    out.close();
+    write_key_mark(out, number, lines);
     out.element("b", std::to_string(number));
     out.text(" ");
     write_name(out, names[number - 1]);

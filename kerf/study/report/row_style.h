@@ -36,6 +36,9 @@ void write_name(Markup& out, std::string_view name);
 /// Writes a name so that lines may end behind its low lines.
 void write_words(Markup& out, std::string_view name);
 
+/// A row's marker by itself, for a key; with a line through it where `line`.
+void write_key_mark(Markup& out, size_t number, bool line);
+
 /// A list of rows: marker, with a line through it where `lines`, number and name.
 void write_key(Markup& out, const std::vector<size_t>& numbers, const std::vector<std::string>& names, bool lines);
 
