@@ -24,14 +24,16 @@ inline size_t most_references(size_t whole, double cap) {
 inline constexpr size_t kSplitGrain = 1024;
 
 /// Calls split(reference, emit) for each reference, in blocks at once; split calls emit(piece) for each piece, which
-/// returns false to stop early. The pieces in order, or nothing if they are more than `most`. Throws Error(stopped) at
-/// the limit.
+/// returns false to stop early. The pieces in order, or nothing if they are more than `most`. For progress it is half of
+/// what is left, for another try may follow. Throws Error(stopped) at the limit.
 template <class Split>
 std::optional<std::vector<Reference>> split_each(std::span<const Reference> whole, size_t most, const WorkLimit& limit,
                                                  Split&& split) {
   constexpr size_t kTellEvery = 256;
   std::vector<std::vector<Reference>> blocks((whole.size() + kSplitGrain - 1) / kSplitGrain);
   std::atomic<size_t> total = 0;
+  const ProgressPart part(limit, 0.5);
+  limit.plan(static_cast<double>(whole.size()));
   parallel_for(whole.size(), kSplitGrain, [&](size_t begin, size_t end) {
     std::vector<Reference>& out = blocks[begin / kSplitGrain];
     size_t told = 0;  // pieces of `out` that `total` knows of
@@ -47,8 +49,12 @@ std::optional<std::vector<Reference>> split_each(std::span<const Reference> whol
     };
     for (size_t i = begin; i < end && total.load(std::memory_order_relaxed) <= most; ++i) split(whole[i], emit);
     tell();
+    out.shrink_to_fit();
+    limit.advance(static_cast<double>(end - begin));
   });
+  HeldBytes held(total * sizeof(Reference));
   if (total > most) return std::nullopt;
+  held.set(2 * total * sizeof(Reference));  // in blocks and, as they are freed, in one
   std::vector<Reference> all;
   all.reserve(total);
   for (std::vector<Reference>& block : blocks) {

@@ -10,6 +10,7 @@
 #include "kerf/base/error.h"
 #include "kerf/base/fp_environment.h"
 #include "kerf/base/parallel.h"
+#include "kerf/references/box_around.h"
 #include "kerf/scene/pipeline.h"
 
 namespace kerf {
@@ -28,15 +29,41 @@ constexpr TraceTable kNotBuilt = {
     [](const void*, std::span<const Ray>, std::span<Hit>, TraceCounts&) { refuse_not_built(); },
 };
 
-/// Seconds since the last call.
-class Stopwatch {
+// How long stages take, about, in shares of each other.
+constexpr double kReferencesWeight = 2, kSplitterWeight = 20, kBuilderWeight = 40, kOptimiserWeight = 40,
+                 kStructureWeight = 100, kLayoutWeight = 2, kMeasureWeight = 5;
+
+double weight_of(const Stage& stage) {
+  const std::string_view kind = stage.entry->kind;
+  if (kind == "splitter") return kSplitterWeight;
+  if (kind == "builder") return kBuilderWeight;
+  if (kind == "optimiser") return kOptimiserWeight;
+  return kind == "structure" ? kStructureWeight : 0;
+}
+
+/// The stages of a build, one after another: how long each takes, and which part of the progress is its own.
+class Stages {
  public:
+  Stages(const Pipeline& pipeline, WorkMeter& meter)
+      : meter_(meter), all_(kReferencesWeight + kLayoutWeight + kMeasureWeight) {
+    for (const Stage& stage : pipeline.stages) all_ += weight_of(stage);
+  }
+
+  void begin(std::string_view what, double weight) {
+    begun_ += weight;
+    meter_.begin_stage(what, begun_ / all_);
+  }
+  void begin(const Stage& stage) { begin(stage.entry->name, weight_of(stage)); }
+
+  /// Seconds since the last call.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
   }
 
  private:
+  WorkMeter& meter_;
+  double all_, begun_ = 0;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
@@ -84,76 +111,93 @@ struct Scene::Built {
   Box3f bounds;
   BuildReport report;
 
-  Built(std::vector<Geometry> added, const Pipeline& pipeline, const BuildOptions& options);
-  StructureInput make_input(const Pipeline& pipeline, const BuildOptions& options, Stopwatch& watch);
-  void make_structure(StructureInput input, std::span<const Stage> stages, Stopwatch& watch);
+  Built(std::vector<Geometry> added, const Pipeline& pipeline, const BuildOptions& options, const WorkLimit& limit);
+  StructureInput make_input(const Pipeline& pipeline, bool skip_invalid, const WorkLimit& limit, Stages& stages);
+  void make_structure(StructureInput input, std::span<const Stage> makers, Stages& stages);
   void describe(size_t kept);
 };
 
-Scene::Built::Built(std::vector<Geometry> added, const Pipeline& pipeline, const BuildOptions& options)
+Scene::Built::Built(std::vector<Geometry> added, const Pipeline& pipeline, const BuildOptions& options,
+                    const WorkLimit& limit)
     : geometries(std::move(added)) {
-  Stopwatch watch;
+  Stages stages(pipeline, *limit.meter);
   report.structure = pipeline.text();
-  StructureInput input = make_input(pipeline, options, watch);
+  StructureInput input = make_input(pipeline, options.skip_invalid, limit, stages);
   const size_t first = pipeline.stages.front().entry->kind == "splitter" ? 1 : 0;
   const size_t kept = report.primitives - report.invalid - report.degenerate;
-  make_structure(std::move(input), std::span(pipeline.stages).subspan(first), watch);
+  make_structure(std::move(input), std::span(pipeline.stages).subspan(first), stages);
+  stages.begin("measure", kMeasureWeight);
   describe(kept);
+  report.peak_bytes = std::max(limit.meter->peak(), report.bytes);
   const auto& s = report.seconds;
   report.seconds.total = s.references + s.split + s.build + s.optimise + s.layout;
 }
 
-StructureInput Scene::Built::make_input(const Pipeline& pipeline, const BuildOptions& options, Stopwatch& watch) {
+StructureInput Scene::Built::make_input(const Pipeline& pipeline, bool skip_invalid, const WorkLimit& limit,
+                                        Stages& stages) {
   report.sa_max = std::numeric_limits<double>::infinity();
   for (const Geometry& geometry : geometries) report.primitives += primitive_count(geometry);
-  PrimitiveReferences whole = make_references(geometries, options.skip_invalid);
+  stages.begin("references", kReferencesWeight);
+  HeldBytes held(report.primitives * sizeof(Reference));
+  PrimitiveReferences whole = make_references(geometries, skip_invalid);
   report.invalid = whole.invalid;
   report.degenerate = whole.degenerate;
-  for (const Reference& reference : whole.references) bounds.extend(reference.bounds());
-  report.seconds.references = watch.lap();
+  bounds = box_around(whole.references);
+  report.seconds.references = stages.lap();
 
   const std::span<const Geometry> all = geometries;
-  StructureInput input{all, std::move(whole.references), false, options.limit};
+  StructureInput input{all, std::move(whole.references), false, limit, std::move(held)};
   input.limit.check();
   if (const auto* splitter = std::get_if<const SplitterEntry*>(&pipeline.stages.front().entry->entry)) {
+    stages.begin(pipeline.stages.front());
     const size_t kept = input.references.size();
-    SplitResult split = (*splitter)->split({all, input.references, geometry_clipper(all), options.limit},
-                                           pipeline.stages.front().options);
+    SplitResult split =
+        (*splitter)->split({all, input.references, geometry_clipper(all), limit}, pipeline.stages.front().options);
     input.references = std::move(split.references);
+    input.held.set(input.references.capacity() * sizeof(Reference));
     input.is_split = input.references.size() > kept;
     report.sa_max = split.limit;
     report.capped = split.capped;
     report.choice = std::move(split.choice);
   }
-  report.seconds.split = watch.lap();
+  report.seconds.split = stages.lap();
   return input;
 }
 
-/// `stages`: a structure, or a builder, then any number of optimisers, then a layout or none.
-void Scene::Built::make_structure(StructureInput input, std::span<const Stage> stages, Stopwatch& watch) {
-  if (const auto* entry = std::get_if<const StructureEntry*>(&stages[0].entry->entry)) {
-    structure = (*entry)->build(std::move(input), stages[0].options);
-    report.seconds.build = watch.lap();
+/// `makers`: a structure, or a builder, then any number of optimisers, then a layout or none. What a maker is given it
+/// accounts for itself.
+void Scene::Built::make_structure(StructureInput input, std::span<const Stage> makers, Stages& stages) {
+  stages.begin(makers[0]);
+  if (const auto* entry = std::get_if<const StructureEntry*>(&makers[0].entry->entry)) {
+    structure = (*entry)->build(std::move(input), makers[0].options);
+    report.seconds.build = stages.lap();
     return;
   }
-  const auto* last = std::get_if<const LayoutEntry*>(&stages.back().entry->entry);
+  const auto* last = std::get_if<const LayoutEntry*>(&makers.back().entry->entry);
   const LayoutEntry& layout = last != nullptr ? **last : layouts().front();
-  const std::span<const Stage> makers = stages.first(stages.size() - (last != nullptr ? 1 : 0));
+  const OptionValues layout_options = last != nullptr ? makers.back().options : OptionValues(layout.options);
+  if (last != nullptr) makers = makers.first(makers.size() - 1);
   const auto& builder = *std::get<const BuilderEntry*>(makers[0].entry->entry);
   const std::span<const Geometry> all = geometries;
+  input.held.release();
   Bvh bvh = builder.build({std::exchange(input.references, {}), geometry_clipper(all), input.limit},
                           options_for(makers[0], layout));
+  HeldBytes tree(bvh.bytes());
   input.is_split = bvh.slots.size() > report.primitives - report.invalid - report.degenerate;  // some builders split
   if (input.is_split) mark_repeated(bvh, geometries);
-  report.seconds.build = watch.lap();
+  report.seconds.build = stages.lap();
   for (const Stage& stage : makers.subspan(1)) {
+    stages.begin(stage);
     const auto& optimiser = *std::get<const OptimiserEntry*>(stage.entry->entry);
+    tree.release();
     bvh = optimiser.optimise(std::move(bvh), options_for(stage, layout), input.limit);
+    tree.set(bvh.bytes());
   }
-  report.seconds.optimise = watch.lap();
-  structure =
-      layout.make(std::move(bvh), input, last != nullptr ? stages.back().options : OptionValues(layout.options));
-  report.seconds.layout = watch.lap();
+  report.seconds.optimise = stages.lap();
+  stages.begin(layout.name, kLayoutWeight);
+  tree.set(2 * tree.bytes());  // both stand beside each other
+  structure = layout.make(std::move(bvh), input, layout_options);
+  report.seconds.layout = stages.lap();
 }
 
 /// Reporting is not building, so no watch runs. `kept`: primitives that can be hit.
@@ -196,11 +240,26 @@ uint32_t Scene::add(Geometry geometry) {
 
 const BuildReport& Scene::build(const BuildOptions& options) {
   const Pipeline pipeline = parse_pipeline(options.structure);
+  WorkMeter meter(options.progress);
+  WorkLimit limit = options.limit;
+  limit.meter = &meter;
   std::unique_ptr<const Built> built;
-  with_threads(options.threads, [&] {
+  const auto build_all = [&] {
     const StandardFloat standard;
-    built = std::make_unique<const Built>(added_ ? added_->geometries : std::vector<Geometry>{}, pipeline, options);
-  });
+    const LimitScope scope(&limit);
+    meter.tell(true);
+    built = std::make_unique<const Built>(added_ ? added_->geometries : std::vector<Geometry>{}, pipeline, options,
+                                          limit);
+    meter.begin_stage("done", 1);
+    meter.tell(true);
+    limit.check();
+  };
+  try {
+    with_threads(options.threads, build_all);
+  } catch (const Error&) {
+    meter.rethrow();
+    throw;
+  }
   built_ = std::move(built);
   table_ = &built_->structure->table();
   data_ = built_->structure->data();

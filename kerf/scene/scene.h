@@ -25,6 +25,10 @@ struct BuildOptions {
   int threads = 0;            ///< 0: as many as the caller's arena has
   bool skip_invalid = false;  ///< drop primitives that are not finite or have a bad index, instead of an error
   WorkLimit limit = {};       ///< when to give up
+  /// Called with the share that is done, from 0 at once to 1 at the end, and what is being done; returns false to
+  /// cancel the build, which then throws Error(stopped). From whichever thread works, one at a time, some 20 times a
+  /// second at most; the share never falls. What it throws comes out of build().
+  WorkMeter::Progress progress = nullptr;
 };
 
 /// What a build did and what came of it.
@@ -41,6 +45,7 @@ struct BuildReport {
   bool capped = false;                ///< the limit asked for would have passed the cap on references, so it was raised
   std::optional<SplitChoice> choice;  ///< of automatic splitting: how far it went, and why
   size_t bytes = 0;                   ///< of what rays are traced through, without the caller's memory
+  size_t peak_bytes = 0;              ///< the most that the build's large arrays took at once, the outcome's included
   size_t nodes = 0, leaves = 0;
   uint32_t depth = 0;         ///< edges from the root to the deepest leaf
   uint32_t largest_leaf = 0;  ///< slots
@@ -77,7 +82,7 @@ class Scene {
 
   /// Makes what was added ready for queries; an empty scene hits nothing. Throws Error for a pipeline that is wrong
   /// (invalid_option), a primitive that is (invalid_geometry, naming the first and how many) or a limit that was
-  /// reached (stopped); the scene then answers as before.
+  /// reached or a progress() that returned false (stopped); the scene then answers as before.
   const BuildReport& build(const BuildOptions& options = {});
 
   /// What the last build did. Throws Error(not_built) before the first.

@@ -22,6 +22,7 @@ struct StructureInput {
   std::vector<Reference> references;     ///< of whole primitives, or of pieces where a splitter came first
   bool is_split = false;                 ///< some primitive has more than one reference
   WorkLimit limit;                       ///< checked now and then
+  HeldBytes held;                        ///< of the references
 };
 
 /// One node, cell or leaf of a structure as study and tests see it.
