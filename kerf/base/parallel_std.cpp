@@ -98,7 +98,7 @@ void run_parallel_for(size_t count, size_t grain, void (*body)(void*, size_t, si
   const auto work = [&] {
     const StandardFloat standard;
     for (size_t block = next++; block < blocks; block = next++) {
-      check_current_limit();
+      if (blocks > 1) check_current_limit();
       body(data, block * grain, std::min(count, (block + 1) * grain));
     }
   };

@@ -37,7 +37,7 @@ void run_parallel_for(size_t count, size_t grain, void (*body)(void*, size_t, si
   tbb::parallel_for(size_t{0}, blocks, [&](size_t block) {
     const StandardFloat standard;
     const LimitScope scope(limit);
-    check_current_limit();
+    if (blocks > 1) check_current_limit();
     body(data, block * grain, std::min(count, (block + 1) * grain));
   });
 }

@@ -34,9 +34,7 @@ ProgressPart::~ProgressPart() {
   meter_->done_ = 0;
 }
 
-HeldBytes::HeldBytes(size_t bytes) : limit_(current), meter_(current != nullptr ? current->meter : nullptr) {
-  set(bytes);
-}
+HeldBytes::HeldBytes() : limit_(current), meter_(current != nullptr ? current->meter : nullptr) {}
 
 HeldBytes::HeldBytes(HeldBytes&& other) noexcept
     : limit_(other.limit_), meter_(other.meter_), bytes_(std::exchange(other.bytes_, 0)) {}

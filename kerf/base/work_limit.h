@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -10,6 +11,10 @@
 #include "kerf/base/work_meter.h"
 
 namespace kerf {
+
+/// What it takes to divide so many things down to single ones, about, in units of progress: parts never take more than
+/// the whole.
+inline double work_of_dividing(double count) { return count > 1 ? count * std::log2(count) : 0; }
 
 /// When long work is to be given up: too late, too large, or no longer wanted. By default: never.
 struct WorkLimit {
@@ -108,7 +113,8 @@ class ProgressPart {
 /// Error(stopped) where more is held than the limit allows.
 class HeldBytes {
  public:
-  explicit HeldBytes(size_t bytes = 0);
+  HeldBytes();
+  explicit HeldBytes(size_t bytes) : HeldBytes() { set(bytes); }
   ~HeldBytes() { release(); }
   HeldBytes(HeldBytes&& other) noexcept;
   HeldBytes& operator=(HeldBytes&& other) noexcept;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <concepts>
 #include <memory>
 #include <optional>
@@ -89,12 +88,7 @@ concept Divider = requires(D& d, const Subset& subset, uint32_t depth) {
   { d.divide(subset, depth) } -> std::same_as<std::optional<Halves>>;
 };
 
-/// The work left of a subset, in units of progress: about what a balanced tree over it takes. What a division leaves to
-/// its halves is never more.
-inline double work_in(const Subset& subset) {
-  const double room = subset.room();
-  return room > 1 ? room * std::log2(room) : 0;
-}
+inline double work_in(const Subset& subset) { return work_of_dividing(subset.room()); }
 
 /// The recursion. A subset of many references is a task that gives its halves to others; one of few makes all nodes
 /// below it, in the order of the finished tree. So the result does not depend on which came first, and what is made is

@@ -195,7 +195,6 @@ void Scene::Built::make_structure(StructureInput input, std::span<const Stage> m
   }
   report.seconds.optimise = stages.lap();
   stages.begin(layout.name, kLayoutWeight);
-  tree.set(2 * tree.bytes());  // both stand beside each other
   structure = layout.make(std::move(bvh), input, layout_options);
   report.seconds.layout = stages.lap();
 }
