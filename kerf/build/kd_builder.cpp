@@ -55,8 +55,6 @@ class Builder {
     }
     cell = {};
     KdHalves& halves = division->halves;
-    halves.below.held.set(halves.below.bytes());
-    halves.above.held.set(halves.above.bytes());
     limit_.advance(work - work_in(halves.below) - work_in(halves.above));
     part.plane = division->plane;
     part.below = std::make_unique<Part>();
@@ -110,6 +108,11 @@ class Builder {
     }
     division.halves = divide(cell, division.plane, clipper_);
     KdCell &below = division.halves.below, &above = division.halves.above;
+    if (count >= kParallelCount) {
+      cell.held.set(cell.bytes());
+      below.held.set(below.bytes());
+      above.held.set(above.bytes());
+    }
     part.work.cuts += division.halves.cuts;
     if (below.references.size() + above.references.size() > cell.allowed) return std::nullopt;
     below.is_of_trial = above.is_of_trial = division.is_trial;

@@ -47,12 +47,13 @@ class OctreeBuilder {
     if (pieces.size() <= options_.leaf_size || depth == options_.max_depth || !divide(pieces, cell, room, parts)) {
       branch.slots.reserve(pieces.size());
       for (const Reference& piece : pieces) branch.slots.push_back({piece.geometry, piece.primitive});
-      uncount(pieces.size() * (sizeof(Reference) - sizeof(LeafSlot)));
+      uncount(pieces.capacity() * sizeof(Reference));
+      count(pieces.size() * sizeof(LeafSlot));
       if (pieces.size() >= kParallelCount) limit_.advance(work_of_dividing(room));
       return;
     }
     const bool worth_tasks = pieces.size() >= kParallelCount;
-    uncount(pieces.size() * sizeof(Reference));
+    uncount(pieces.capacity() * sizeof(Reference));
     std::vector<Reference>().swap(pieces);
     std::array<uint32_t, 8> octants{};
     size_t count = 0, total = 0;
@@ -109,7 +110,9 @@ class OctreeBuilder {
       below += half_area(octant_of(cell, octant, axes_)) * static_cast<double>(parts[octant].size());
     }
     if (!(area + below < area * static_cast<double>(pieces.size()))) return false;
-    count(total * sizeof(Reference) + 8 * sizeof(Branch));
+    size_t room_taken = 0;
+    for (const std::vector<Reference>& part : parts) room_taken += part.capacity();
+    count(room_taken * sizeof(Reference) + 8 * sizeof(Branch));
     return true;
   }
 
@@ -176,7 +179,8 @@ Octree build_octree(std::span<const Reference> references, const Clipper& clippe
   }
   const double most =
       std::min(static_cast<double>(kMaxReferences), options.cap * static_cast<double>(references.size()));
-  const Branch root = OctreeBuilder(clipper, options, tree.axes, limit).build(references, tree.bounds, most);
+  OctreeBuilder builder(clipper, options, tree.axes, limit);  // it accounts for the branches
+  const Branch root = builder.build(references, tree.bounds, most);
   tree.nodes.resize(1);
   tree.slots.reserve(slot_count(root));
   const HeldBytes held(tree.slots.capacity() * sizeof(LeafSlot));

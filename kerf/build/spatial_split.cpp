@@ -164,16 +164,19 @@ Bvh build_spatial_split(BuildInput input, const OptionValues& options) {
     return build_top_down(partition, shared, input.limit);
   }
   if (input.references.empty()) return {};
-  const size_t room = most_references(input.references.size(), options["cap"]);
-  input.limit.check(room * (sizeof(Reference) + 3 * sizeof(BvhNode)));
+  // Where memory allows fewer pieces, fewer are made.
+  const size_t room = std::max(
+      input.references.size(),
+      std::min(most_references(input.references.size(), options["cap"]), input.limit.bytes / kSpatialSplitBytes));
   SpatialOrder order(std::move(input.references), room);
   SpatialSplit divider(order, input.clipper,
                        {bins, static_cast<uint32_t>(options["spatial_bins"]), options["overlap"], options["favour"]},
                        shared);
   TreePart tree = detail::build_parts(divider, order.whole(), shared, input.limit);
-  const HeldBytes slots(2 * room * sizeof(LeafSlot));  // spread and gathered
+  HeldBytes slots(room * sizeof(LeafSlot));
   const std::vector<LeafSlot> spread = slots_of(order);
   order.free_references();
+  slots.set(2 * room * sizeof(LeafSlot));  // spread and gathered
   Bvh bvh;
   bvh.nodes = joined(std::move(tree));
   shrink_to_children(bvh.nodes);

@@ -24,8 +24,8 @@ inline size_t most_references(size_t whole, double cap) {
 inline constexpr size_t kSplitGrain = 1024;
 
 /// Calls split(reference, emit) for each reference, in blocks at once; split calls emit(piece) for each piece, which
-/// returns false to stop early. The pieces in order, or nothing if they are more than `most`. For progress it is half of
-/// what is left, for another try may follow. Throws Error(stopped) at the limit.
+/// returns false to stop early. The pieces in order, or nothing if they are more than `most`. For progress it is half
+/// of what is left, for another try may follow. Throws Error(stopped) at the limit.
 template <class Split>
 std::optional<std::vector<Reference>> split_each(std::span<const Reference> whole, size_t most, const WorkLimit& limit,
                                                  Split&& split) {
@@ -36,6 +36,7 @@ std::optional<std::vector<Reference>> split_each(std::span<const Reference> whol
   limit.plan(static_cast<double>(whole.size()));
   parallel_for(whole.size(), kSplitGrain, [&](size_t begin, size_t end) {
     std::vector<Reference>& out = blocks[begin / kSplitGrain];
+    out.reserve(end - begin);
     size_t told = 0;  // pieces of `out` that `total` knows of
     // Told to the others now and then, or each thread might make as many as all together may.
     const auto tell = [&] {
@@ -49,7 +50,7 @@ std::optional<std::vector<Reference>> split_each(std::span<const Reference> whol
     };
     for (size_t i = begin; i < end && total.load(std::memory_order_relaxed) <= most; ++i) split(whole[i], emit);
     tell();
-    out.shrink_to_fit();
+    if (out.size() < out.capacity() / 4 * 3) out.shrink_to_fit();
     limit.advance(static_cast<double>(end - begin));
   });
   HeldBytes held(total * sizeof(Reference));

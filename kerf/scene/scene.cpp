@@ -98,6 +98,12 @@ OptionValues options_for(const Stage& stage, const LayoutEntry& layout) {
   return options;
 }
 
+size_t count_primitives(std::span<const Geometry> geometries) {
+  size_t count = 0;
+  for (const Geometry& geometry : geometries) count += primitive_count(geometry);
+  return count;
+}
+
 }  // namespace
 
 struct Scene::Added {
@@ -136,7 +142,7 @@ Scene::Built::Built(std::vector<Geometry> added, const Pipeline& pipeline, const
 StructureInput Scene::Built::make_input(const Pipeline& pipeline, bool skip_invalid, const WorkLimit& limit,
                                         Stages& stages) {
   report.sa_max = std::numeric_limits<double>::infinity();
-  for (const Geometry& geometry : geometries) report.primitives += primitive_count(geometry);
+  report.primitives = count_primitives(geometries);
   stages.begin("references", kReferencesWeight);
   HeldBytes held(report.primitives * sizeof(Reference));
   PrimitiveReferences whole = make_references(geometries, skip_invalid);
@@ -151,8 +157,9 @@ StructureInput Scene::Built::make_input(const Pipeline& pipeline, bool skip_inva
   if (const auto* splitter = std::get_if<const SplitterEntry*>(&pipeline.stages.front().entry->entry)) {
     stages.begin(pipeline.stages.front());
     const size_t kept = input.references.size();
-    SplitResult split =
-        (*splitter)->split({all, input.references, geometry_clipper(all), limit}, pipeline.stages.front().options);
+    const size_t most = kerf::memory_need(pipeline, report.primitives, limit.bytes).most_references;
+    SplitResult split = (*splitter)->split({all, input.references, geometry_clipper(all), limit, most},
+                                           pipeline.stages.front().options);
     input.references = std::move(split.references);
     input.held.set(input.references.capacity() * sizeof(Reference));
     input.is_split = input.references.size() > kept;
@@ -239,6 +246,8 @@ uint32_t Scene::add(Geometry geometry) {
 
 const BuildReport& Scene::build(const BuildOptions& options) {
   const Pipeline pipeline = parse_pipeline(options.structure);
+  const size_t needed = memory_need(options).least;
+  if (needed > options.limit.bytes) options.limit.check(needed);
   WorkMeter meter(options.progress);
   WorkLimit limit = options.limit;
   limit.meter = &meter;
@@ -247,8 +256,8 @@ const BuildReport& Scene::build(const BuildOptions& options) {
     const StandardFloat standard;
     const LimitScope scope(&limit);
     meter.tell(true);
-    built = std::make_unique<const Built>(added_ ? added_->geometries : std::vector<Geometry>{}, pipeline, options,
-                                          limit);
+    built =
+        std::make_unique<const Built>(added_ ? added_->geometries : std::vector<Geometry>{}, pipeline, options, limit);
     meter.begin_stage("done", 1);
     meter.tell(true);
     limit.check();
@@ -263,6 +272,10 @@ const BuildReport& Scene::build(const BuildOptions& options) {
   table_ = &built_->structure->table();
   data_ = built_->structure->data();
   return built_->report;
+}
+
+MemoryNeed Scene::memory_need(const BuildOptions& options) const {
+  return kerf::memory_need(parse_pipeline(options.structure), added_ ? count_primitives(added_->geometries) : 0);
 }
 
 const BuildReport& Scene::report() const {

@@ -10,6 +10,7 @@
 #include "kerf/geometry/hit.h"
 #include "kerf/geometry/ray.h"
 #include "kerf/references/split_result.h"
+#include "kerf/scene/memory_need.h"
 #include "kerf/scene/presets.h"
 #include "kerf/scene/structure.h"
 #include "kerf/trace/trace_table.h"
@@ -24,7 +25,9 @@ struct BuildOptions {
   std::string structure{kDefaultStructure};
   int threads = 0;            ///< 0: as many as the caller's arena has
   bool skip_invalid = false;  ///< drop primitives that are not finite or have a bad index, instead of an error
-  WorkLimit limit = {};       ///< when to give up
+  /// When to give up. A limit on bytes below what is possible is refused before work starts, see Scene::memory_need();
+  /// where it allows fewer references than a splitter would make, fewer are made.
+  WorkLimit limit = {};
   /// Called with the share that is done, from 0 at once to 1 at the end, and what is being done; returns false to
   /// cancel the build, which then throws Error(stopped). From whichever thread works, one at a time, some 20 times a
   /// second at most; the share never falls. What it throws comes out of build().
@@ -84,6 +87,10 @@ class Scene {
   /// (invalid_option), a primitive that is (invalid_geometry, naming the first and how many) or a limit that was
   /// reached or a progress() that returned false (stopped); the scene then answers as before.
   const BuildReport& build(const BuildOptions& options = {});
+
+  /// What a build with these options would take: known before any work is done. Throws Error(invalid_option) for a
+  /// pipeline that is wrong.
+  MemoryNeed memory_need(const BuildOptions& options = {}) const;
 
   /// What the last build did. Throws Error(not_built) before the first.
   const BuildReport& report() const;

@@ -74,6 +74,7 @@ struct LayoutEntry {
   uint32_t leaf_size;  ///< slots that a leaf of the Bvh may have at most; 0: any number
   /// The input's references are gone: they are in the Bvh.
   std::unique_ptr<const Structure> (*make)(Bvh bvh, const StructureInput& input, const OptionValues& options);
+  bool is_bounded = true;  ///< it never takes more than a tree and its nodes once more
 };
 std::span<const LayoutEntry> layouts();
 
@@ -85,6 +86,7 @@ struct StructureEntry {
   std::span<const OptionSpec> options;
   bool takes_pieces;  ///< a splitter may stand before it
   std::unique_ptr<const Structure> (*build)(StructureInput input, const OptionValues& options);
+  size_t bytes_per_reference;  ///< what it takes for each reference at least
 };
 std::span<const StructureEntry> structures();
 

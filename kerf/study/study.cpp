@@ -98,9 +98,9 @@ class Study {
   }
 
   /// False from the first time on that progress() wants no more.
-  bool tell(const Row& row, const char* what) {
+  bool tell(const Row& row, const char* what, double share = 0) {
     if (options_.progress && !is_stopped_) {
-      is_stopped_ = !options_.progress(done_ / steps_, input_.name + ": " + what + " " + row.pipeline);
+      is_stopped_ = !options_.progress((done_ + share) / steps_, input_.name + ": " + what + " " + row.pipeline);
     }
     return !is_stopped_;
   }
@@ -112,16 +112,17 @@ class Study {
     return limit;
   }
 
-  std::unique_ptr<Scene> built(const Row& row) const {
+  std::unique_ptr<Scene> built(const Row& row, WorkMeter::Progress progress = nullptr) const {
     return std::make_unique<Scene>(build_scene(input_.description, {.structure = row.pipeline,
                                                                     .threads = options_.threads,
                                                                     .skip_invalid = options_.skip_invalid,
-                                                                    .limit = limit()}));
+                                                                    .limit = limit(),
+                                                                    .progress = std::move(progress)}));
   }
 
   void build(Row& row) {
     try {
-      row.scene = built(row);
+      row.scene = built(row, [&](double share, std::string_view) { return tell(row, "build", share); });
       row.report = row.scene->report();
       row.build_seconds.push_back(row.report.seconds.total);
       if (row.report.bytes > options_.limit_bytes) {
