@@ -79,8 +79,10 @@ TEST_P(EveryPipeline, TakesWhatItSays) {
   const size_t peak = heap_peak([&] { scene_.build({.structure = GetParam()}); });
   const BuildReport& report = scene_.report();
   EXPECT_GE(report.peak_bytes, report.bytes);
-  EXPECT_NEAR(static_cast<double>(report.peak_bytes), static_cast<double>(peak), 0.15 * static_cast<double>(peak));
   const MemoryNeed need = scene_.memory_need({.structure = GetParam()});
+  // What small cells of the structures that are no trees of boxes take while they are divided is not counted.
+  const double tolerance = need.most != MemoryNeed::kUnbounded ? 0.1 : 0.2;
+  EXPECT_NEAR(static_cast<double>(report.peak_bytes), static_cast<double>(peak), tolerance * static_cast<double>(peak));
   EXPECT_LE(peak, need.most);
 }
 
@@ -113,7 +115,7 @@ TEST_P(EveryPipeline, KeepsToItsLimit) {
         EXPECT_EQ(need.most, MemoryNeed::kUnbounded) << error.what();
       }
     });
-    EXPECT_LE(static_cast<double>(peak), 1.15 * static_cast<double>(bytes));
+    EXPECT_LE(static_cast<double>(peak), 1.5 * static_cast<double>(bytes));
     if (need.most != MemoryNeed::kUnbounded) {
       EXPECT_LE(peak, bytes);
     }

@@ -37,32 +37,35 @@ ProgressPart::~ProgressPart() {
 HeldBytes::HeldBytes() : limit_(current), meter_(current != nullptr ? current->meter : nullptr) {}
 
 HeldBytes::HeldBytes(HeldBytes&& other) noexcept
-    : limit_(other.limit_), meter_(other.meter_), bytes_(std::exchange(other.bytes_, 0)) {}
+    : limit_(other.limit_), meter_(other.meter_), bytes_(other.bytes_.exchange(0)) {}
 
 HeldBytes& HeldBytes::operator=(HeldBytes&& other) noexcept {
   release();
   limit_ = other.limit_;
   meter_ = other.meter_;
-  bytes_ = std::exchange(other.bytes_, 0);
+  bytes_ = other.bytes_.exchange(0);
   return *this;
 }
 
 void HeldBytes::set(size_t bytes) {
-  if (meter_ == nullptr) return;
-  if (bytes <= bytes_) {
-    meter_->release(bytes_ - bytes);
-    bytes_ = bytes;
-    return;
-  }
-  const size_t held = meter_->hold(bytes - bytes_);
-  bytes_ = bytes;
-  if (held <= limit_->bytes) return;
-  release();
-  limit_->check(held);
+  const size_t before = bytes_;
+  bytes > before ? add(bytes - before) : subtract(before - bytes);
 }
 
-void HeldBytes::release() {
-  if (meter_ != nullptr) meter_->release(std::exchange(bytes_, 0));
+void HeldBytes::add(size_t bytes) {
+  if (meter_ == nullptr) return;
+  const size_t held = meter_->hold(bytes);
+  if (held > limit_->bytes) {
+    meter_->release(bytes);
+    limit_->check(held);
+  }
+  bytes_ += bytes;
+}
+
+void HeldBytes::subtract(size_t bytes) {
+  if (meter_ == nullptr) return;
+  meter_->release(bytes);
+  bytes_ -= bytes;
 }
 
 }  // namespace kerf

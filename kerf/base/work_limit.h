@@ -121,13 +121,16 @@ class HeldBytes {
 
   /// More or less than before.
   void set(size_t bytes);
-  void release();
+  /// So much more, or less; from any thread.
+  void add(size_t bytes);
+  void subtract(size_t bytes);
+  void release() { subtract(bytes_); }
   size_t bytes() const { return bytes_; }
 
  private:
   const WorkLimit* limit_;
   WorkMeter* meter_;
-  size_t bytes_ = 0;
+  std::atomic<size_t> bytes_ = 0;
 };
 
 }  // namespace kerf

@@ -21,6 +21,11 @@ void WorkMeter::begin_stage(std::string_view what, double until) {
   done_ = 0;
 }
 
+void WorkMeter::end() {
+  begin_stage("done", 1);
+  begin_stage("done", 1);
+}
+
 void WorkMeter::plan(double units) {
   const std::lock_guard lock(mutex_);
   from_ = share();

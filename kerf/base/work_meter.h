@@ -25,6 +25,8 @@ class WorkMeter {
 
   /// What follows, until share `until` of all work. Its words must outlive the work.
   void begin_stage(std::string_view what, double until);
+  /// All is done.
+  void end();
   /// The rest of the stage, or of its part, is so many units of work, whatever a unit is.
   void plan(double units);
   /// So many of them are done. From any thread.

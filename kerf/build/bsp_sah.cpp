@@ -21,6 +21,25 @@ struct Grown {
   std::unique_ptr<Grown> child[2];
 };
 
+/// How much has grown.
+struct Size {
+  size_t nodes = 0, leaves = 0, slots = 0;
+
+  explicit Size(const Grown& grown) { add(grown); }
+  void add(const Grown& grown) {
+    ++nodes;
+    leaves += grown.child[0] == nullptr ? 1 : 0;
+    slots += grown.slots.size();
+    for (const auto& child : grown.child) {
+      if (child != nullptr) add(*child);
+    }
+  }
+  size_t bytes() const {
+    constexpr size_t kOverhead = 16;  // of an allocation
+    return nodes * (sizeof(Grown) + kOverhead) + leaves * kOverhead + slots * sizeof(LeafSlot);
+  }
+};
+
 /// The recursion.
 class Grower {
  public:
@@ -39,6 +58,7 @@ class Grower {
     auto parts = plane ? std::optional(pieces.cut(*plane)) : std::nullopt;
     // Counting may differ from cutting by a rounding: the cap is kept all the same.
     if (!parts || uint64_t{parts->first.size()} + parts->second.size() > share) {
+      grown->slots.reserve(pieces.size());
       for (const BspPiece& piece : pieces.list()) {
         const Reference& reference = pieces.reference_of(piece);
         grown->slots.push_back({reference.geometry, reference.primitive});
@@ -67,7 +87,9 @@ class Grower {
     const auto grow_child = [&](int i, BspPieces& some, const ConvexCell& part_cell, uint64_t allowed) {
       const bool is_told = count >= kParallelCount && some.size() < kParallelCount;
       grown.child[i] = grow(std::move(some), part_cell, around, allowed, depth + 1);
-      if (is_told) limit_.advance(work_of_dividing(static_cast<double>(allowed)));
+      if (!is_told) return;
+      held_.add(Size(*grown.child[i]).bytes());
+      limit_.advance(work_of_dividing(static_cast<double>(allowed)));
     };
     const auto grow_below = [&] { grow_child(0, pieces.first, cells.below, for_below); };
     const auto grow_above = [&] { grow_child(1, pieces.second, cells.above, share - for_below); };
@@ -94,11 +116,17 @@ class Grower {
   const BspOptions& options_;
   const WorkLimit& limit_;
   double slack_;
+  mutable HeldBytes held_;  // what has grown
 };
 
 /// Numbers nodes in depth-first order of pairs.
 void flatten(const Grown& root, BspTree& tree) {
   std::vector<std::pair<const Grown*, uint32_t>> stack{{&root, 0}};
+  const Size size(root);
+  const HeldBytes held(size.nodes * (sizeof(BspNode) + sizeof(BspCell)) + size.slots * sizeof(LeafSlot));
+  tree.nodes.reserve(size.nodes);
+  tree.cells.reserve(size.nodes);
+  tree.slots.reserve(size.slots);
   tree.nodes.push_back(root.node);
   tree.cells.push_back(root.cell);
   while (!stack.empty()) {
@@ -150,8 +178,8 @@ BspTree build_bsp_sah(std::span<const Geometry> geometries, const std::vector<Re
   const double cap = std::min(options.cap * static_cast<double>(references.size()), double{kMaxReferences});
   const uint64_t share = std::max<uint64_t>(static_cast<uint64_t>(cap), references.size());
   limit.plan(work_of_dividing(static_cast<double>(share)));
-  const std::unique_ptr<Grown> root =
-      Grower(options, limit, tree.slack).grow(std::move(pieces), ConvexCell(tree.bounds), tree.bounds, share, 0);
+  const Grower grower(options, limit, tree.slack);  // it accounts for what grows
+  const std::unique_ptr<Grown> root = grower.grow(std::move(pieces), ConvexCell(tree.bounds), tree.bounds, share, 0);
   flatten(*root, tree);
   return tree;
 }

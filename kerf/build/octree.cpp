@@ -25,12 +25,6 @@ class OctreeBuilder {
   OctreeBuilder(const Clipper& clipper, const OctreeOptions& options, uint32_t axes, const WorkLimit& limit)
       : clipper_(clipper), options_(options), axes_(axes), limit_(limit) {}
 
-  ~OctreeBuilder() {
-    if (limit_.meter != nullptr) limit_.meter->release(bytes_);
-  }
-  OctreeBuilder(const OctreeBuilder&) = delete;
-  OctreeBuilder& operator=(const OctreeBuilder&) = delete;
-
   Branch build(std::span<const Reference> references, const Box3f& cell, double room) {
     count(references.size_bytes());
     limit_.plan(work_of_dividing(room));
@@ -110,18 +104,20 @@ class OctreeBuilder {
       below += half_area(octant_of(cell, octant, axes_)) * static_cast<double>(parts[octant].size());
     }
     if (!(area + below < area * static_cast<double>(pieces.size()))) return false;
-    size_t room_taken = 0;
-    for (const std::vector<Reference>& part : parts) room_taken += part.capacity();
-    count(room_taken * sizeof(Reference) + 8 * sizeof(Branch));
+    size_t bytes = 0;
+    for (const std::vector<Reference>& part : parts) {
+      if (!part.empty()) bytes += part.capacity() * sizeof(Reference) + sizeof(Branch);
+    }
+    count(bytes);
     return true;
   }
 
   void count(size_t bytes) {
-    if (limit_.meter != nullptr) limit_.meter->hold(bytes);
+    held_.add(bytes);
     limit_.check(bytes_ += bytes);
   }
   void uncount(size_t bytes) {
-    if (limit_.meter != nullptr) limit_.meter->release(bytes);
+    held_.subtract(bytes);
     bytes_ -= bytes;
   }
 
@@ -130,6 +126,7 @@ class OctreeBuilder {
   const uint32_t axes_;
   const WorkLimit& limit_;
   std::atomic<size_t> bytes_ = 0;  // of the pieces and branches that there are now
+  HeldBytes held_;                 // the same, for the work as a whole
 };
 
 size_t slot_count(const Branch& branch) {

@@ -176,9 +176,7 @@ bool make_moves(MovableTree& tree, const std::vector<Move>& moves, const WorkLim
 
 Bvh optimise_reinsertion(Bvh bvh, const OptionValues& options, const WorkLimit& limit) {
   if (bvh.nodes.empty()) return bvh;
-  // The tree to work on, the moves, the tree to return.
-  constexpr size_t kPerNode = sizeof(MovableTree::Node) + 2 * sizeof(Move) + sizeof(BvhNode) + 8;
-  limit.check(bvh.nodes.size() * kPerNode + bvh.bytes());
+  limit.check(MovableTree::bytes_for(bvh) + bvh.bytes());
   HeldBytes given(bvh.bytes());
   const HeldBytes held(MovableTree::bytes_for(bvh));
   MovableTree tree(bvh);

@@ -189,6 +189,7 @@ class TopDown {
 template <Divider D>
 TreePart build_parts(D& divider, const Subset& whole, const TopDownOptions& options, const WorkLimit& limit) {
   check_depth(whole.count(), options);
+  limit.check(size_t{whole.room()} * (sizeof(Reference) + 2 * sizeof(BvhNode)));
   limit.plan(work_in(whole));
   return Recursion<D>(divider, options.larger_first, limit).build(whole, 0);
 }

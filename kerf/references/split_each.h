@@ -34,14 +34,16 @@ std::optional<std::vector<Reference>> split_each(std::span<const Reference> whol
   std::atomic<size_t> total = 0;
   const ProgressPart part(limit, 0.5);
   limit.plan(static_cast<double>(whole.size()));
+  HeldBytes held;
   parallel_for(whole.size(), kSplitGrain, [&](size_t begin, size_t end) {
     std::vector<Reference>& out = blocks[begin / kSplitGrain];
     out.reserve(end - begin);
     size_t told = 0;  // pieces of `out` that `total` knows of
     // Told to the others now and then, or each thread might make as many as all together may.
     const auto tell = [&] {
-      total += out.size() - std::exchange(told, out.size());
-      limit.check(total * sizeof(Reference));
+      const size_t more = out.size() - std::exchange(told, out.size());
+      held.add(more * sizeof(Reference));
+      limit.check((total += more) * sizeof(Reference));
     };
     const auto emit = [&](const Reference& piece) {
       out.push_back(piece);
@@ -53,9 +55,8 @@ std::optional<std::vector<Reference>> split_each(std::span<const Reference> whol
     if (out.size() < out.capacity() / 4 * 3) out.shrink_to_fit();
     limit.advance(static_cast<double>(end - begin));
   });
-  HeldBytes held(total * sizeof(Reference));
   if (total > most) return std::nullopt;
-  held.set(2 * total * sizeof(Reference));  // in blocks and, as they are freed, in one
+  held.add(total * sizeof(Reference));  // in blocks and, as they are freed, in one
   std::vector<Reference> all;
   all.reserve(total);
   for (std::vector<Reference>& block : blocks) {

@@ -258,7 +258,7 @@ const BuildReport& Scene::build(const BuildOptions& options) {
     meter.tell(true);
     built =
         std::make_unique<const Built>(added_ ? added_->geometries : std::vector<Geometry>{}, pipeline, options, limit);
-    meter.begin_stage("done", 1);
+    meter.end();
     meter.tell(true);
     limit.check();
   };

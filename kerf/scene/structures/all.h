@@ -68,7 +68,7 @@ inline constexpr LayoutEntry kLateSplitLayout = {
 
 std::unique_ptr<const Structure> build_brute_force(StructureInput input, const OptionValues& options);
 inline constexpr StructureEntry kBruteForceStructure = {
-    "brute_force", "tests every primitive, without a tree", "", {}, false, build_brute_force, 40};
+    "brute_force", "tests every primitive, without a tree", "", {}, false, build_brute_force, 104};
 
 std::unique_ptr<const Structure> build_bsp_structure(StructureInput input, const OptionValues& options);
 inline constexpr StructureEntry kBspStructure = {
@@ -115,7 +115,7 @@ inline constexpr StructureEntry kOctreeStructure = {
     std::span(kQuadtreeOptions).first<std::size(kQuadtreeOptions) - 1>(),
     false,
     build_octree_structure,
-    72};
+    128};
 
 std::unique_ptr<const Structure> build_quadtree_structure(StructureInput input, const OptionValues& options);
 inline constexpr StructureEntry kQuadtreeStructure = {
@@ -125,7 +125,7 @@ inline constexpr StructureEntry kQuadtreeStructure = {
     kQuadtreeOptions,
     false,
     build_quadtree_structure,
-    72};
+    128};
 
 std::unique_ptr<const Structure> build_bih_structure(StructureInput input, const OptionValues& options);
 inline constexpr auto kBihOptions = [] {
@@ -166,6 +166,6 @@ inline constexpr StructureEntry kKdSahStructure = {
     kKdOptions,
     false,
     build_kd_sah,
-    64};
+    160};
 
 }  // namespace kerf
