@@ -5,10 +5,17 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <cstring>
+#include <exception>
 #include <limits>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <string>
+#include <thread>
 #include <type_traits>
 #include <vector>
 
@@ -156,18 +163,85 @@ struct Rays {
   }
 };
 
+/// A build on a thread of its own. Python's functions and its interrupts are seen to by the thread that waits for it,
+/// with Python's lock; all else goes on without.
+class WatchedBuild {
+ public:
+  WatchedBuild(Scene& scene, BuildOptions options, const py::object& progress) : progress_(progress) {
+    options.limit.cancelled = &cancelled_;
+    options.progress = [this](double share, std::string_view what) {
+      const std::lock_guard lock(mutex_);
+      share_ = share;
+      what_ = what;
+      return true;
+    };
+    thread_ = std::thread([this, &scene, options = std::move(options)] {
+      try {
+        scene.build(options);
+      } catch (...) {
+        failure_ = std::current_exception();
+      }
+      const std::lock_guard lock(mutex_);
+      is_done_ = true;
+      news_.notify_one();
+    });
+  }
+  ~WatchedBuild() {
+    if (!thread_.joinable()) return;
+    cancelled_ = true;
+    const py::gil_scoped_release release;
+    thread_.join();
+  }
+
+  /// Returns when it is done. Throws what it throws, or a function of Python.
+  void wait() {
+    constexpr std::chrono::milliseconds kTellEvery(50);
+    for (bool is_done = false; !is_done;) {
+      double share = 0;
+      std::string what;
+      {
+        const py::gil_scoped_release release;
+        std::unique_lock lock(mutex_);
+        news_.wait_for(lock, kTellEvery, [&] { return is_done_; });
+        is_done = is_done_;
+        share = share_;
+        what = what_;
+      }
+      if (is_done) {
+        thread_.join();
+        if (failure_) std::rethrow_exception(failure_);
+      }
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      if (!progress_.is_none() && progress_(share, what).is(py::bool_(false))) cancelled_ = true;
+    }
+    if (cancelled_) throw Error(ErrorCode::stopped, "build", "it was cancelled");
+  }
+
+ private:
+  const py::object& progress_;
+  std::atomic<bool> cancelled_ = false;
+  std::mutex mutex_;  // of what follows
+  std::condition_variable news_;
+  double share_ = 0;
+  std::string what_;
+  bool is_done_ = false;
+  std::exception_ptr failure_;
+  std::thread thread_;
+};
+
 /// A scene of one mesh that keeps the arrays it looks at.
 class MeshScene {
  public:
   MeshScene(const py::object& vertices, const py::object& faces, const std::string& structure, int threads,
-            bool skip_invalid, bool refittable)
+            bool skip_invalid, bool refittable, const py::object& progress, std::optional<size_t> max_bytes)
       : vertices_(to_floats(vertices, "vertices")), faces_(to_faces(faces, skip_invalid)), threads_(threads) {
     if (threads < 0) refuse("threads", "0 or more are expected, not " + std::to_string(threads));
     check_rows(vertices_, "vertices");
     const auto corners = to_strided<Vec3f>(vertices_);
     scene_.add(TriangleMesh{corners, to_strided<TriangleCorners>(faces_)});
-    const py::gil_scoped_release release;
-    scene_.build({.structure = structure, .threads = threads, .skip_invalid = skip_invalid, .refittable = refittable});
+    BuildOptions options{.structure = structure, .threads = threads, .skip_invalid = skip_invalid, .refittable = refittable};
+    if (max_bytes) options.limit.bytes = *max_bytes;
+    WatchedBuild(scene_, std::move(options), progress).wait();
   }
 
   /// The array is looked at from now on, and kept; after an error the one before stays.
@@ -242,16 +316,16 @@ class MeshScene {
   py::dict report() const {
     using namespace py::literals;
     const BuildReport& r = scene_.report();
-    return py::dict("structure"_a = r.structure, "primitives"_a = r.primitives, "invalid"_a = r.invalid,
-                    "degenerate"_a = r.degenerate, "references"_a = r.references,
-                    "references_per_primitive"_a = r.references_per_primitive, "sa_max"_a = r.sa_max,
-                    "capped"_a = r.capped,
-                    "split_reason"_a = r.choice ? py::object(py::str(r.choice->reason)) : py::object(py::none()),
-                    "bytes"_a = r.bytes, "nodes"_a = r.nodes, "leaves"_a = r.leaves, "depth"_a = r.depth,
-                    "largest_leaf"_a = r.largest_leaf, "sah_cost"_a = r.sah_cost, "tree_hash"_a = r.tree_hash,
-                    "seconds"_a = py::dict("references"_a = r.seconds.references, "split"_a = r.seconds.split,
-                                           "build"_a = r.seconds.build, "optimise"_a = r.seconds.optimise,
-                                           "layout"_a = r.seconds.layout, "total"_a = r.seconds.total));
+    return py::dict(
+        "structure"_a = r.structure, "primitives"_a = r.primitives, "invalid"_a = r.invalid,
+        "degenerate"_a = r.degenerate, "references"_a = r.references,
+        "references_per_primitive"_a = r.references_per_primitive, "sa_max"_a = r.sa_max, "capped"_a = r.capped,
+        "split_reason"_a = r.choice ? py::object(py::str(r.choice->reason)) : py::object(py::none()),
+        "bytes"_a = r.bytes, "peak_bytes"_a = r.peak_bytes, "nodes"_a = r.nodes, "leaves"_a = r.leaves,
+        "depth"_a = r.depth, "largest_leaf"_a = r.largest_leaf, "sah_cost"_a = r.sah_cost, "tree_hash"_a = r.tree_hash,
+        "seconds"_a =
+            py::dict("references"_a = r.seconds.references, "split"_a = r.seconds.split, "build"_a = r.seconds.build,
+                     "optimise"_a = r.seconds.optimise, "layout"_a = r.seconds.layout, "total"_a = r.seconds.total));
   }
 
  private:
@@ -297,11 +371,16 @@ void add_error(py::module_& module) {
 }
 
 constexpr const char* kSceneDoc =
-    "Scene(vertices, faces, structure='balanced', threads=0, skip_invalid=False, refittable=False)\n\n"
+    "Scene(vertices, faces, structure='balanced', threads=0, skip_invalid=False, refittable=False, progress=None,\n"
+    "      max_bytes=None)\n\n"
     "Triangles and what finds which of them rays hit. vertices: (n, 3) numbers; faces: (m, 3) integers.\n"
     "float32 vertices and uint32 faces are looked at, not copied, and kept alive: leave them unchanged, or with\n"
     "refittable=True change them and call refit().\n"
-    "Raises Error, a ValueError, for bad input.";
+    "progress: called from this thread with the share of the build that is done, which ends at 1, and what is being\n"
+    "done, some 20 times a second; False from it cancels the build, an exception ends it. max_bytes: the most memory\n"
+    "that the build may take. Raises Error, a ValueError, for bad input, a build that was cancelled (code 'stopped') "
+    "or\n"
+    "that cannot do with max_bytes.";
 
 constexpr const char* kRefitDoc =
     "Follows vertices that moved without a new tree; for a Scene with refittable=True. vertices: (n, 3) numbers for "
@@ -332,9 +411,11 @@ PYBIND11_MODULE(kerf, module) {
   module.attr("Hits") = hits;
   module.def("menu", menu_list, "All that a structure may name: a list of dicts.");
   py::class_<MeshScene>(module, "Scene", kSceneDoc)
-      .def(py::init<const py::object&, const py::object&, const std::string&, int, bool, bool>(), py::arg("vertices"),
-           py::arg("faces"), py::arg("structure") = kerf::kDefaultStructure, py::arg("threads") = 0,
-           py::arg("skip_invalid") = false, py::arg("refittable") = false)
+      .def(py::init<const py::object&, const py::object&, const std::string&, int, bool, bool, const py::object&,
+                    std::optional<size_t>>(),
+           py::arg("vertices"), py::arg("faces"), py::arg("structure") = kerf::kDefaultStructure, py::arg("threads") = 0,
+           py::arg("skip_invalid") = false, py::arg("refittable") = false, py::arg("progress") = py::none(),
+           py::arg("max_bytes") = py::none())
       .def("refit", &MeshScene::refit, py::arg("vertices"), kRefitDoc)
       .def("closest_hit", &MeshScene::closest_hit, py::arg("origins"), py::arg("directions"), py::arg("t_min") = 0.0F,
            py::arg("t_max") = infinity, kClosestDoc)

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "apps/kerf/command.h"
+#include "apps/kerf/progress_bar.h"
 #include "apps/kerf/scene_input.h"
 #include "kerf/scene/pipeline.h"
 #include "kerf/study/inspect_text.h"
@@ -95,7 +96,10 @@ int inspect(const Arguments& a) {
   options.trial = a.trial;
   if (!a.json.empty() && a.json != "-") check_output(a.json);
   const SceneInput input = read_input(a, static_cast<double>(width) / height);
+  end_at_interrupts();
+  ProgressBar bar(a.quiet);
   options.build = input.build;
+  options.build.progress = std::ref(bar);
   options.width = width;
   options.height = height;
   options.top = a.top;

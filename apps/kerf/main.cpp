@@ -128,6 +128,11 @@ void watch_interrupts() {
   std::signal(SIGTERM, on_interrupt);
 }
 
+void end_at_interrupts() {
+  std::signal(SIGINT, [](int signal) { std::_Exit(128 + signal); });
+  std::signal(SIGTERM, [](int signal) { std::_Exit(128 + signal); });
+}
+
 void ignore_interrupts() {
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
@@ -147,6 +152,10 @@ int main(int argc, char** argv) {
     }
     return code;
   } catch (const kerf::Error& error) {
+    if (error.code() == kerf::ErrorCode::stopped && kerf::app::interrupted()) {
+      fmt::print(stderr, "kerf: interrupted\n");
+      return kerf::app::kInterrupted;
+    }
     fmt::print(stderr, "kerf: {}\n", error.what());
     const bool is_usage =
         error.code() == kerf::ErrorCode::invalid_option || error.code() == kerf::ErrorCode::invalid_argument;

@@ -145,12 +145,12 @@ int render(Arguments a) {
   const double aspect = static_cast<double>(width) / height;
   check_words(a, view, width, height);
   SceneInput input = read_input(a, aspect);
+  watch_interrupts();
   if (view == nullptr && !input.description.is_lit) add_light(input.description, input.camera, input.build);
   const Json comparison = a.compare.empty() ? Json() : compare(input, a, aspect);
   const RenderScene scene = build_input(a, input);
   const BuildReport& report = scene.scene().report();
   if (!a.quiet) print_build_notes(report);
-  watch_interrupts();
   const Picture picture = view != nullptr ? render_debug_view(scene.scene(), input.camera, a, *view, width, height)
                                           : render_beauty(scene, input.camera, a, width, height);
   ignore_interrupts();

@@ -4,7 +4,9 @@
 
 #include <charconv>
 #include <cmath>
+#include <functional>
 
+#include "apps/kerf/progress_bar.h"
 #include "kerf/base/error.h"
 #include "kerf/render/bare_model.h"
 #include "kerf/scene/pipeline.h"
@@ -135,13 +137,17 @@ SceneInput read_input(const SceneArguments& arguments, double aspect) {
   }
   input.camera = settled_camera(arguments, input.description, aspect);
   input.build = {settled_structure(arguments, input.description), arguments.threads, arguments.skip_invalid};
+  input.build.limit.cancelled = interrupt_flag();
   check_camera(arguments, input.camera);
   return input;
 }
 
 RenderScene build_input(const SceneArguments& arguments, SceneInput& input) {
+  ProgressBar bar(arguments.quiet);
+  BuildOptions build = input.build;
+  build.progress = std::ref(bar);
   try {
-    return RenderScene(std::move(input.description), input.build);
+    return RenderScene(std::move(input.description), build);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::invalid_argument) throw;
     throw Error(ErrorCode::file, arguments.input, error.what());
@@ -161,6 +167,7 @@ Json report_json(const BuildReport& r) {
           {"capped", r.capped},
           {"split_choice", choice_json(r.choice)},
           {"bytes", r.bytes},
+          {"peak_bytes", r.peak_bytes},
           {"nodes", r.nodes},
           {"leaves", r.leaves},
           {"depth", r.depth},

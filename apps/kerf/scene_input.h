@@ -38,7 +38,8 @@ struct SceneInput {
 /// the file says, and that before the defaults.
 SceneInput read_input(const SceneArguments& arguments, double aspect);
 
-/// Builds what was read; its description is taken. What is wrong with the file's values is an Error (file).
+/// Builds what was read, with a progress bar, until an interrupt; its description is taken. What is wrong with the
+/// file's values is an Error (file).
 RenderScene build_input(const SceneArguments& arguments, SceneInput& input);
 
 nlohmann::ordered_json report_json(const BuildReport& report);

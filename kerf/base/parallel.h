@@ -19,7 +19,8 @@ void run_with_threads(int threads, void (*body)(void*), void* data);
 }  // namespace detail
 
 /// Calls f(begin, end) for fixed blocks of `grain` that cover [0, count); blocks may run at once and in any order.
-/// Block borders do not depend on the number of threads. The first exception is rethrown here.
+/// Block borders do not depend on the number of threads. The first exception is rethrown here. Before each of several
+/// blocks the current limit is looked at, see current_limit().
 template <class F>
 void parallel_for(size_t count, size_t grain, F&& f) {
   using Body = std::remove_reference_t<F>;
@@ -28,7 +29,7 @@ void parallel_for(size_t count, size_t grain, F&& f) {
       const_cast<void*>(static_cast<const void*>(std::addressof(f))));
 }
 
-/// Calls f() and g(), maybe at once, and returns after both.
+/// Calls f() and g(), maybe at once, and returns after both; before each the current limit is looked at.
 template <class F, class G>
 void parallel_invoke(F&& f, G&& g) {
   struct Both {

@@ -12,6 +12,7 @@
 
 #include "kerf/base/fp_environment.h"
 #include "kerf/base/parallel.h"
+#include "kerf/base/work_limit.h"
 
 namespace kerf {
 namespace {
@@ -67,9 +68,11 @@ class FirstException {
 template <class F>
 std::optional<std::thread> try_start(Budget& from, FirstException& failure, F f) {
   if (!from.take()) return std::nullopt;
+  const WorkLimit* const limit = current_limit();
   try {
-    return std::thread([&from, &failure, f] {
+    return std::thread([&from, &failure, f, limit] {
       const StandardFloat standard;
+      const LimitScope scope(limit);
       current_budget = &from;
       failure.guard(f);
       from.give_back();
@@ -95,6 +98,7 @@ void run_parallel_for(size_t count, size_t grain, void (*body)(void*, size_t, si
   const auto work = [&] {
     const StandardFloat standard;
     for (size_t block = next++; block < blocks; block = next++) {
+      if (blocks > 1) check_current_limit();
       body(data, block * grain, std::min(count, (block + 1) * grain));
     }
   };
@@ -114,12 +118,16 @@ void run_parallel_for(size_t count, size_t grain, void (*body)(void*, size_t, si
 void run_parallel_invoke(void (*body)(void*, int), void* data) {
   const StandardFloat standard;
   FirstException failure;
-  std::optional<std::thread> other = try_start(budget(), failure, [=] { body(data, 1); });
-  failure.guard([&] { body(data, 0); });
+  const auto part = [=](int which) {
+    check_current_limit();
+    body(data, which);
+  };
+  std::optional<std::thread> other = try_start(budget(), failure, [=] { part(1); });
+  failure.guard([&] { part(0); });
   if (other) {
     other->join();
   } else {
-    failure.guard([&] { body(data, 1); });
+    failure.guard([&] { part(1); });
   }
   failure.rethrow();
 }

@@ -8,6 +8,7 @@
 
 #include "kerf/base/fp_environment.h"
 #include "kerf/base/parallel.h"
+#include "kerf/base/work_limit.h"
 
 namespace kerf {
 
@@ -32,15 +33,21 @@ namespace detail {
 void run_parallel_for(size_t count, size_t grain, void (*body)(void*, size_t, size_t), void* data) {
   grain = std::max<size_t>(grain, 1);
   const size_t blocks = (count + grain - 1) / grain;
+  const WorkLimit* const limit = current_limit();
   tbb::parallel_for(size_t{0}, blocks, [&](size_t block) {
     const StandardFloat standard;
+    const LimitScope scope(limit);
+    if (blocks > 1) check_current_limit();
     body(data, block * grain, std::min(count, (block + 1) * grain));
   });
 }
 
 void run_parallel_invoke(void (*body)(void*, int), void* data) {
+  const WorkLimit* const limit = current_limit();
   const auto part = [=](int which) {
     const StandardFloat standard;
+    const LimitScope scope(limit);
+    check_current_limit();
     body(data, which);
   };
   tbb::parallel_invoke([&] { part(0); }, [&] { part(1); });
@@ -50,7 +57,11 @@ void run_with_threads(int threads, void (*body)(void*), void* data) {
   if (threads <= 0) return body(data);
   threads = std::min(threads, kMostThreads);
   if (threads > tbb::info::default_concurrency()) allow_more_threads();
-  tbb::task_arena(threads).execute([&] { body(data); });
+  const WorkLimit* const limit = current_limit();
+  tbb::task_arena(threads).execute([&] {
+    const LimitScope scope(limit);
+    body(data);
+  });
 }
 
 }  // namespace detail

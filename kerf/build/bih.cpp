@@ -125,6 +125,7 @@ Bih build_bih(std::vector<Reference> references, const TopDownOptions& options, 
   TopDownOptions left_first = options;
   left_first.larger_first = false;  // the first child is the one below the plane
   Bvh bvh = build_top_down(planes, left_first, limit);
+  const HeldBytes held(bvh.bytes() + bvh.nodes.size() * (2 * sizeof(uint32_t) + 3 * sizeof(BihNode)));
   Bih bih;
   bih.bounds = bvh.nodes[0].bounds();
   bih.nodes = Conversion(bvh, planes, cut_off).run();

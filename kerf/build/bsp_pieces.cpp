@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "kerf/base/work_limit.h"
 #include "kerf/build/convex_cell.h"
 #include "kerf/geometry/clip.h"
 
@@ -175,7 +176,9 @@ std::pair<BspPieces, BspPieces> BspPieces::cut(const BspPlane& plane) const {
   std::pair<BspPieces, BspPieces> parts{{geometries_, *references_, tolerance_},
                                         {geometries_, *references_, tolerance_}};
   auto& [below, above] = parts;
+  LimitWatch watch;
   for (const BspPiece& piece : list_) {
+    watch.step();
     const Side side = side_of(piece, plane);
     if (side == Side::both) {
       piece.count > 0 ? cut_polygon(piece, plane, below, above) : cut_sphere(piece, plane, below, above);

@@ -34,6 +34,7 @@ class BspPieces {
 
   const std::vector<BspPiece>& list() const { return list_; }
   uint32_t size() const { return static_cast<uint32_t>(list_.size()); }
+  size_t bytes() const { return list_.capacity() * sizeof(BspPiece) + corners_.capacity() * sizeof(Vec3d); }
   const Reference& reference_of(const BspPiece& piece) const { return (*references_)[piece.reference]; }
   Box3f bounds() const;
 

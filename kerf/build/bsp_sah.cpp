@@ -21,6 +21,25 @@ struct Grown {
   std::unique_ptr<Grown> child[2];
 };
 
+/// How much has grown.
+struct Size {
+  size_t nodes = 0, leaves = 0, slots = 0;
+
+  explicit Size(const Grown& grown) { add(grown); }
+  void add(const Grown& grown) {
+    ++nodes;
+    leaves += grown.child[0] == nullptr ? 1 : 0;
+    slots += grown.slots.size();
+    for (const auto& child : grown.child) {
+      if (child != nullptr) add(*child);
+    }
+  }
+  size_t bytes() const {
+    constexpr size_t kOverhead = 16;  // of an allocation
+    return nodes * (sizeof(Grown) + kOverhead) + leaves * kOverhead + slots * sizeof(LeafSlot);
+  }
+};
+
 /// The recursion.
 class Grower {
  public:
@@ -30,7 +49,8 @@ class Grower {
   /// `share`: how many references the leaves below may have together.
   std::unique_ptr<Grown> grow(BspPieces pieces, const ConvexCell& cell, const Box3f& around, uint64_t share,
                               uint32_t depth) const {
-    if (pieces.size() >= kParallelCount) limit_.check();
+    const bool is_large = pieces.size() >= kParallelCount;
+    HeldBytes held(is_large ? pieces.bytes() : 0);
     auto grown = std::make_unique<Grown>();
     grown->cell = {box_of(pieces, cell, around), cell.area()};
     const auto plane =
@@ -38,15 +58,18 @@ class Grower {
     auto parts = plane ? std::optional(pieces.cut(*plane)) : std::nullopt;
     // Counting may differ from cutting by a rounding: the cap is kept all the same.
     if (!parts || uint64_t{parts->first.size()} + parts->second.size() > share) {
+      grown->slots.reserve(pieces.size());
       for (const BspPiece& piece : pieces.list()) {
         const Reference& reference = pieces.reference_of(piece);
         grown->slots.push_back({reference.geometry, reference.primitive});
       }
+      if (is_large) limit_.advance(work_of_dividing(static_cast<double>(share)));
       return grown;
     }
     grown->node = {plane->normal, 0, plane->offset, 0, plane->kind()};
     const uint32_t count = pieces.size();
     pieces = BspPieces(std::move(parts->first));
+    held.release();
     divide(*grown, {std::move(pieces), std::move(parts->second)}, cell.cut(*plane), share, depth, count);
     return grown;
   }
@@ -61,13 +84,18 @@ class Grower {
     const double part = cost > 0 ? cost_below / cost : 0.5;
     const uint64_t for_below = below + static_cast<uint64_t>(static_cast<double>(rest) * part);
     const Box3f around = grown.cell.bounds;
-    const auto grow_below = [&] {
-      grown.child[0] = grow(std::move(pieces.first), cells.below, around, for_below, depth + 1);
+    const auto grow_child = [&](int i, BspPieces& some, const ConvexCell& part_cell, uint64_t allowed) {
+      const bool is_told = count >= kParallelCount && some.size() < kParallelCount;
+      grown.child[i] = grow(std::move(some), part_cell, around, allowed, depth + 1);
+      if (!is_told) return;
+      held_.add(Size(*grown.child[i]).bytes());
+      limit_.advance(work_of_dividing(static_cast<double>(allowed)));
     };
-    const auto grow_above = [&] {
-      grown.child[1] = grow(std::move(pieces.second), cells.above, around, share - for_below, depth + 1);
-    };
+    const auto grow_below = [&] { grow_child(0, pieces.first, cells.below, for_below); };
+    const auto grow_above = [&] { grow_child(1, pieces.second, cells.above, share - for_below); };
     if (count >= kParallelCount) {
+      limit_.advance(work_of_dividing(static_cast<double>(share)) - work_of_dividing(static_cast<double>(for_below)) -
+                     work_of_dividing(static_cast<double>(share - for_below)));
       parallel_invoke(grow_below, grow_above);
     } else {
       grow_below();
@@ -88,11 +116,17 @@ class Grower {
   const BspOptions& options_;
   const WorkLimit& limit_;
   double slack_;
+  mutable HeldBytes held_;  // what has grown
 };
 
 /// Numbers nodes in depth-first order of pairs.
 void flatten(const Grown& root, BspTree& tree) {
   std::vector<std::pair<const Grown*, uint32_t>> stack{{&root, 0}};
+  const Size size(root);
+  const HeldBytes held(size.nodes * (sizeof(BspNode) + sizeof(BspCell)) + size.slots * sizeof(LeafSlot));
+  tree.nodes.reserve(size.nodes);
+  tree.cells.reserve(size.nodes);
+  tree.slots.reserve(size.slots);
   tree.nodes.push_back(root.node);
   tree.cells.push_back(root.cell);
   while (!stack.empty()) {
@@ -142,9 +176,10 @@ BspTree build_bsp_sah(std::span<const Geometry> geometries, const std::vector<Re
   BspPieces pieces(geometries, references, tolerance);
   for (uint32_t i = 0; i < references.size(); ++i) pieces.add_whole(i);
   const double cap = std::min(options.cap * static_cast<double>(references.size()), double{kMaxReferences});
-  const std::unique_ptr<Grown> root = Grower(options, limit, tree.slack)
-                                          .grow(std::move(pieces), ConvexCell(tree.bounds), tree.bounds,
-                                                std::max<uint64_t>(static_cast<uint64_t>(cap), references.size()), 0);
+  const uint64_t share = std::max<uint64_t>(static_cast<uint64_t>(cap), references.size());
+  limit.plan(work_of_dividing(static_cast<double>(share)));
+  const Grower grower(options, limit, tree.slack);  // it accounts for what grows
+  const std::unique_ptr<Grown> root = grower.grow(std::move(pieces), ConvexCell(tree.bounds), tree.bounds, share, 0);
   flatten(*root, tree);
   return tree;
 }

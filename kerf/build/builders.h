@@ -17,6 +17,7 @@ struct BuildInput {
   std::vector<Reference> references;
   Clipper clipper;  ///< for a builder that splits; its function may be null for the others
   WorkLimit limit;
+  size_t most = kMaxReferences;  ///< references that it may make, whatever the options say
 
   BuildInput() = default;
   BuildInput(std::vector<Reference> all, const Clipper& clip = {}, const WorkLimit& work = {})
@@ -30,10 +31,16 @@ struct BuilderEntry {
   std::string_view source;
   std::span<const OptionSpec> options;
   Bvh (*build)(BuildInput input, const OptionValues& options);
+  /// What it takes for each reference at its peak, at most, the references and the tree included: by default what all
+  /// top-down builders take, the parts of the tree beside the whole.
+  size_t bytes_per_reference = sizeof(LeafSlot) + 4 * sizeof(BvhNode);
 };
 
 /// All builders that make a Bvh. The same references give the same tree, byte for byte, for any number of threads.
 std::span<const BuilderEntry> builders();
+
+/// What spatial_split takes for each reference that it has room for, at most.
+inline constexpr size_t kSpatialSplitBytes = 152;
 
 Bvh build_spatial_median(BuildInput input, const OptionValues& options);
 Bvh build_object_median(BuildInput input, const OptionValues& options);

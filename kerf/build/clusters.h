@@ -15,6 +15,8 @@ class Clusters {
  public:
   /// The farthest that find_partners() looks.
   static constexpr uint32_t kMostRadius = 256;
+  /// Of one cluster.
+  static constexpr size_t kBytes = 6 * sizeof(float) + sizeof(uint32_t);
 
   Clusters() = default;
   /// One for each reference. Boxes are kept in units of the box around all: areas then neither overflow nor vanish.

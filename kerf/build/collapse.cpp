@@ -18,7 +18,7 @@ void both(uint32_t depth, F&& f, G&& g) {
 
 }  // namespace
 
-Collapse::Collapse(const MovableTree& tree, const LeafRule& rule) : tree_(tree), rule_(rule), summaries_(tree.end()) {
+Collapse::Collapse(const MovableTree& tree, const LeafRule& rule) : tree_(tree), rule_(rule), held_(tree.end() * sizeof(Summary)), summaries_(tree.end()) {
   choose(MovableTree::kRoot, 0);
 }
 
@@ -43,7 +43,9 @@ double Collapse::choose(uint32_t n, uint32_t depth) {
 
 Bvh Collapse::bvh(const std::vector<LeafSlot>& slots) const {
   Bvh bvh;
-  bvh.nodes.resize(size_t{summaries_[MovableTree::kRoot].nodes} + 1);
+  const size_t nodes = size_t{summaries_[MovableTree::kRoot].nodes} + 1;
+  const HeldBytes held(nodes * sizeof(BvhNode) + slots.size() * sizeof(LeafSlot));
+  bvh.nodes.resize(nodes);
   bvh.slots.resize(slots.size());
   write(bvh, slots, {MovableTree::kRoot, 0, 1, 0, 0});
   return bvh;

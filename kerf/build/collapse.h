@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "kerf/base/work_limit.h"
 #include "kerf/build/movable_tree.h"
 
 namespace kerf {
@@ -39,6 +40,7 @@ class Collapse {
 
   const MovableTree& tree_;
   LeafRule rule_;
+  HeldBytes held_;
   std::vector<Summary> summaries_;
 };
 

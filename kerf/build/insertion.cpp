@@ -29,8 +29,9 @@ class GrowingTree {
               const WorkLimit& limit)
       : search_all_(search_all) {
     nodes_.reserve(2 * references.size());
+    limit.plan(static_cast<double>(order.size()));
     for (size_t i = 0; i < order.size(); ++i) {
-      if (i % kCheckEvery == 0) limit.check();
+      if (i % kCheckEvery == kCheckEvery - 1) limit.advance(kCheckEvery);
       insert(order[i], references[order[i]].bounds());
     }
   }
@@ -140,6 +141,8 @@ class GrowingTree {
 /// depth bound are then those of all top-down builders.
 class GrownOrder : public ReferenceOrder {
  public:
+  static constexpr size_t kBytes = sizeof(Reference) + 4 * sizeof(uint32_t);  ///< for each reference
+
   GrownOrder(std::span<const Reference> references, std::span<const GrowingNode> nodes)
       : ReferenceOrder(in_order(references, nodes)), cuts_(references.size()) {
     if (nodes.empty()) return;
@@ -213,6 +216,7 @@ class GrownOrder : public ReferenceOrder {
     return cuts_[subset.begin].end == subset.end ? cuts_[subset.begin].right : kNowhere;
   }
 
+  static_assert(kBytes == sizeof(Reference) + sizeof(Cut));
   std::vector<Cut> cuts_;  ///< by place
   uint32_t root_ = kNowhere;
 };
@@ -233,6 +237,8 @@ Bvh build_insertion(BuildInput input, const OptionValues& options) {
       insertion_order(input.references.size(), options.is_on("order"), static_cast<uint64_t>(options["seed"]));
   input.limit.check(input.references.size() * (2 * sizeof(GrowingNode) + sizeof(Reference)));
   const auto grown = [&] {
+    const ProgressPart part(input.limit, 0.9);
+    const HeldBytes held(input.references.size() * (2 * sizeof(GrowingNode) + sizeof(uint32_t) + GrownOrder::kBytes));
     const GrowingTree tree(input.references, order, options.is_on("search"), input.limit);
     return GrownOrder(input.references, tree.nodes());
   };

@@ -18,6 +18,8 @@ class BvhOfJoins {
   Bvh make() {
     settle(tree_.root, 0);
     Bvh bvh;
+    const HeldBytes held((size_t{node_count(tree_.root)} + 1) * sizeof(BvhNode) +
+                         tree_.references.size() * sizeof(LeafSlot));
     bvh.nodes.resize(size_t{node_count(tree_.root)} + 1);
     bvh.slots.resize(tree_.references.size());
     write(bvh, tree_.root, {0, 1, 0});

@@ -20,7 +20,14 @@ struct JoinTree {
   std::vector<Reference> references;
   std::vector<Join> joins;  ///< one fewer than references
   uint32_t root = 0;
+  HeldBytes held;
 
+  /// Makes room for their joins.
+  void take(std::vector<Reference> all) {
+    references = std::move(all);
+    held.set(references.size() * (sizeof(Reference) + sizeof(Join)));
+    joins.resize(references.size() - 1);
+  }
   bool is_join(uint32_t part) const { return part >= references.size(); }
   Join& join(uint32_t part) { return joins[part - references.size()]; }
   const Join& join(uint32_t part) const { return joins[part - references.size()]; }

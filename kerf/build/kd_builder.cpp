@@ -1,7 +1,6 @@
 #include "kerf/build/kd_builder.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -28,6 +27,7 @@ struct Part {
   std::vector<KdNode> nodes;  ///< in order; numbers count from the piece's own first node and slot
   std::vector<LeafSlot> slots;
   KdWork work;
+  HeldBytes held;
 };
 
 class Builder {
@@ -37,21 +37,30 @@ class Builder {
 
   void build(KdCell cell, Part& part) {
     if (cell.references.size() < kParallelCount) {
+      const double work = work_in(cell);
       build_piece(std::move(cell), part);
-      count(part.nodes.size() * sizeof(KdNode) + part.slots.size() * sizeof(LeafSlot));
+      part.nodes.shrink_to_fit();
+      part.slots.shrink_to_fit();
+      part.held.set(part.nodes.size() * sizeof(KdNode) + part.slots.size() * sizeof(LeafSlot));
+      limit_.advance(work);
       return;
     }
+    const double work = work_in(cell);
+    cell.held.set(cell.bytes());
     std::optional<Division> division = divided(cell, part, false);
     if (!division) {
       append_leaf(slots_of(cell), part);
+      limit_.advance(work);
       return;
     }
     cell = {};
+    KdHalves& halves = division->halves;
+    limit_.advance(work - work_in(halves.below) - work_in(halves.above));
     part.plane = division->plane;
     part.below = std::make_unique<Part>();
     part.above = std::make_unique<Part>();
-    parallel_invoke([&] { build(std::move(division->halves.below), *part.below); },
-                    [&] { build(std::move(division->halves.above), *part.above); });
+    parallel_invoke([&] { build(std::move(halves.below), *part.below); },
+                    [&] { build(std::move(halves.above), *part.above); });
   }
 
  private:
@@ -99,6 +108,11 @@ class Builder {
     }
     division.halves = divide(cell, division.plane, clipper_);
     KdCell &below = division.halves.below, &above = division.halves.above;
+    if (count >= kParallelCount) {
+      cell.held.set(cell.bytes());
+      below.held.set(below.bytes());
+      above.held.set(above.bytes());
+    }
     part.work.cuts += division.halves.cuts;
     if (below.references.size() + above.references.size() > cell.allowed) return std::nullopt;
     below.is_of_trial = above.is_of_trial = division.is_trial;
@@ -145,13 +159,12 @@ class Builder {
     if (number > KdNode::kMaxIndex) throw Error(ErrorCode::too_large, "kd-tree", "more than 2^30 nodes or references");
   }
 
-  void count(size_t bytes) { limit_.check(made_ += bytes); }
+  static double work_in(const KdCell& cell) { return work_of_dividing(static_cast<double>(cell.allowed)); }
 
   const Clipper* clipper_;
   const KdOptions& options_;
   uint32_t max_depth_;
   const WorkLimit& limit_;
-  std::atomic<size_t> made_ = 0;  // bytes of the pieces that are done
 };
 
 size_t count_nodes(const Part& part) {
@@ -181,6 +194,10 @@ void append(Part& part, KdTree& tree, KdWork& work) {
     tree.nodes.push_back(node);
   }
   tree.slots.insert(tree.slots.end(), part.slots.begin(), part.slots.end());
+  std::vector<KdNode>().swap(part.nodes);
+  std::vector<LeafSlot>().swap(part.slots);
+  part.held.release();
+  check_current_limit();
 }
 
 /// The depth that Havran's thesis (2000) recommends.
@@ -205,12 +222,14 @@ KdTree build_kd_tree(std::vector<Reference> references, const Clipper& clipper, 
   root.allowed =
       static_cast<uint64_t>(std::min(options.cap * static_cast<double>(count), static_cast<double>(KdNode::kMaxIndex)));
   tree.bounds = root.bounds;
+  limit.plan(work_of_dividing(static_cast<double>(root.allowed)));
   const uint32_t max_depth = options.max_depth > 0 ? std::min(options.max_depth, kMaxDepth) : usual_depth(count);
   Part whole;
   Builder(clipper, options, max_depth, limit).build(std::move(root), whole);
   if (std::max(count_nodes(whole), count_slots(whole)) > KdNode::kMaxIndex) {
     throw Error(ErrorCode::too_large, "kd-tree", "more than 2^30 nodes or references");
   }
+  const HeldBytes held(count_nodes(whole) * sizeof(KdNode) + count_slots(whole) * sizeof(LeafSlot));
   tree.nodes.reserve(count_nodes(whole));
   tree.slots.reserve(count_slots(whole));
   KdWork done;

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "kerf/base/work_limit.h"
 #include "kerf/build/kd_events.h"
 #include "kerf/references/clipper.h"
 
@@ -16,6 +17,13 @@ struct KdCell {
   uint64_t allowed = 0;  ///< references that the leaves below may have, all together
   uint32_t depth = 0;
   bool is_of_trial = false;  ///< made by a division that does not pay by itself
+  HeldBytes held;            ///< of a large cell
+
+  size_t bytes() const {
+    size_t bytes = references.capacity() * sizeof(Reference);
+    for (const std::vector<KdEvent>& line : events) bytes += line.capacity() * sizeof(KdEvent);
+    return bytes;
+  }
 };
 
 struct KdHalves {

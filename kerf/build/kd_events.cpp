@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "kerf/base/parallel.h"
+#include "kerf/base/work_limit.h"
 
 namespace kerf {
 namespace {
@@ -89,7 +90,11 @@ KdEvents make_events(std::span<const Reference> references) {
   for_each_axis(references.size(), [&](uint32_t axis) {
     events[axis].reserve(2 * references.size());
     for (uint32_t i = 0; i < references.size(); ++i) append_events(references[i].bounds(), axis, i, events[axis]);
-    std::sort(events[axis].begin(), events[axis].end());
+    LimitWatch watch;
+    std::sort(events[axis].begin(), events[axis].end(), [&](const KdEvent& a, const KdEvent& b) {
+      watch.step();
+      return a < b;
+    });
   });
   return events;
 }

@@ -42,6 +42,7 @@ double fitting_limit(const std::vector<Leaf>& leaves, const Clipper& clipper, co
                      const WorkLimit& limit) {
   std::vector<Reference> references;
   references.reserve(leaves.size());
+  const HeldBytes held(leaves.size() * sizeof(Reference));
   for (const Leaf& leaf : leaves) references.push_back(leaf.reference);
   return early_split(references, clipper, options, limit).limit;
 }
@@ -104,12 +105,13 @@ std::vector<Block> cut_leaves(const std::vector<Leaf>& leaves, const Clipper& cl
                               const WorkLimit& limit, size_t grain) {
   std::vector<Block> blocks((leaves.size() + grain - 1) / grain);
   std::atomic<size_t> pairs = 0;
+  limit.plan(static_cast<double>(leaves.size()));
   parallel_for(leaves.size(), grain, [&](size_t begin, size_t end) {
-    limit.check();
     PieceTrees trees(clipper, sa_max, limit, pairs);
     Block& block = blocks[begin / grain];
     for (size_t i = begin; i < end; ++i) block.nodes.push_back(trees.add(leaves[i], static_cast<uint32_t>(i)));
     block.pairs = std::move(trees.pairs);
+    limit.advance(static_cast<double>(end - begin));
   });
   return blocks;
 }
@@ -127,6 +129,7 @@ LateSplitBvh build_late_split(const Bvh& bvh, const Clipper& clipper, const Earl
   constexpr size_t kGrain = 1024;
   LateSplitBvh tree;
   const std::vector<Leaf> leaves = bvh.nodes.empty() ? std::vector<Leaf>() : leaves_of(bvh);
+  const HeldBytes of_leaves(leaves.size() * sizeof(Leaf));
   limit.check();
   const double sa_max = fitting_limit(leaves, clipper, options, limit);
   if (leaves.empty()) return tree;
@@ -134,6 +137,10 @@ LateSplitBvh build_late_split(const Bvh& bvh, const Clipper& clipper, const Earl
   std::vector<Block> blocks = cut_leaves(leaves, clipper, sa_max, limit, kGrain);
 
   // The pairs of the finished tree come first, in its order, then those of the pieces, by leaf.
+  size_t cut = 0;
+  for (const Block& block : blocks) cut += block.pairs.size();
+  const HeldBytes held(leaves.size() * (sizeof(Node) + sizeof(LeafSlot)) +
+                       (bvh.nodes.size() / 2 + 2 * cut) * sizeof(LateSplitPair));
   const size_t upper_pairs = (bvh.nodes.size() - 1) / 2;
   std::vector<size_t> first_pair{upper_pairs};
   for (const Block& block : blocks) first_pair.push_back(first_pair.back() + block.pairs.size());

@@ -62,12 +62,16 @@ Bvh build_lbvh(BuildInput input, const OptionValues& options) {
   if (count == 0) return {};
   detail::check_depth(count, shared);
   input.limit.check(count * kJoinTreeBytes);  // codes and their sort took less before
+  constexpr double kSteps = 3;
+  input.limit.plan(kSteps);
   JoinTree tree;
   {
     MortonOrder order = morton_order(std::move(input.references), input.limit);
-    tree.references = std::move(order.references);
-    tree.joins.resize(count - 1);
+    input.limit.advance(1);
+    tree.take(std::move(order.references));
+    const HeldBytes codes(order.codes.size() * sizeof(uint64_t));
     tree.root = HighestBit(tree, order.codes, input.limit).join(0, count);
+    input.limit.advance(1);
   }
   return make_bvh(std::move(tree), shared, input.limit);
 }

@@ -69,6 +69,8 @@ uint64_t MortonGrid::code(const Reference& reference) const {
 
 MortonOrder morton_order(std::vector<Reference> references, const WorkLimit& limit) {
   const size_t count = references.size();
+  // Given and ordered references, keys and codes; the copy that the sort makes is gone before the last.
+  const HeldBytes held(count * (2 * sizeof(Reference) + sizeof(KeyedNumber) + sizeof(uint64_t)));
   std::vector<KeyedNumber> keys(count);
   const MortonGrid grid(bounds_of_centers(references));
   parallel_for(count, kGrain, [&](size_t begin, size_t end) {

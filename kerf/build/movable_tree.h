@@ -25,6 +25,10 @@ class MovableTree {
     Box3f bounds() const { return {lower, upper}; }
   };
 
+  /// What one takes.
+  static size_t bytes_for(const Bvh& bvh) {
+    return bvh.nodes.size() * (sizeof(Node) + sizeof(uint8_t)) + bvh.slots.size() * sizeof(uint32_t);
+  }
   /// Of a tree with nodes, none of them deeper than kMaxDepth.
   explicit MovableTree(const Bvh& bvh);
 

@@ -27,9 +27,10 @@ class OctreeBuilder {
 
   Branch build(std::span<const Reference> references, const Box3f& cell, double room) {
     count(references.size_bytes());
+    limit_.plan(work_of_dividing(room));
     Branch root;
     build(root, {references.begin(), references.end()}, cell, 0, room);
-    count(bytes_);  // the tree stands beside the branches that it is made from
+    limit_.check(2 * bytes_);  // the tree stands beside the branches that it is made from
     return root;
   }
 
@@ -40,11 +41,13 @@ class OctreeBuilder {
     if (pieces.size() <= options_.leaf_size || depth == options_.max_depth || !divide(pieces, cell, room, parts)) {
       branch.slots.reserve(pieces.size());
       for (const Reference& piece : pieces) branch.slots.push_back({piece.geometry, piece.primitive});
-      bytes_ -= pieces.size() * (sizeof(Reference) - sizeof(LeafSlot));
+      uncount(pieces.capacity() * sizeof(Reference));
+      count(pieces.size() * sizeof(LeafSlot));
+      if (pieces.size() >= kParallelCount) limit_.advance(work_of_dividing(room));
       return;
     }
     const bool worth_tasks = pieces.size() >= kParallelCount;
-    bytes_ -= pieces.size() * sizeof(Reference);
+    uncount(pieces.capacity() * sizeof(Reference));
     std::vector<Reference>().swap(pieces);
     std::array<uint32_t, 8> octants{};
     size_t count = 0, total = 0;
@@ -55,11 +58,20 @@ class OctreeBuilder {
       branch.octants |= 1U << octant;
     }
     branch.children.resize(count);
+    if (worth_tasks) {
+      double work = work_of_dividing(room);
+      for (uint32_t i = 0; i < count; ++i) {
+        work -= work_of_dividing(room * static_cast<double>(parts[octants[i]].size()) / static_cast<double>(total));
+      }
+      limit_.advance(work);
+    }
     parallel_for(count, worth_tasks ? 1 : count, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         std::vector<Reference>& part = parts[octants[i]];
         const double share = static_cast<double>(part.size()) / static_cast<double>(total);
+        const bool is_told = worth_tasks && part.size() < kParallelCount;
         build(branch.children[i], std::move(part), octant_of(cell, octants[i], axes_), depth + 1, room * share);
+        if (is_told) limit_.advance(work_of_dividing(room * share));
       }
     });
   }
@@ -68,7 +80,9 @@ class OctreeBuilder {
   bool divide(const std::vector<Reference>& pieces, const Box3f& cell, double room,
               std::array<std::vector<Reference>, 8>& parts) {
     size_t total = 0;
+    LimitWatch watch;
     for (const Reference& piece : pieces) {
+      watch.step();
       Reference part = piece;
       const auto cut = [&](const Box3f& box, uint32_t axis, float position) -> CutBoxes {
         part.lower = box.lower;
@@ -90,18 +104,36 @@ class OctreeBuilder {
       below += half_area(octant_of(cell, octant, axes_)) * static_cast<double>(parts[octant].size());
     }
     if (!(area + below < area * static_cast<double>(pieces.size()))) return false;
-    count(total * sizeof(Reference) + 8 * sizeof(Branch));
+    size_t bytes = 0;
+    for (const std::vector<Reference>& part : parts) {
+      if (!part.empty()) bytes += part.capacity() * sizeof(Reference) + sizeof(Branch);
+    }
+    count(bytes);
     return true;
   }
 
-  void count(size_t bytes) { limit_.check(bytes_ += bytes); }
+  void count(size_t bytes) {
+    held_.add(bytes);
+    limit_.check(bytes_ += bytes);
+  }
+  void uncount(size_t bytes) {
+    held_.subtract(bytes);
+    bytes_ -= bytes;
+  }
 
   const Clipper& clipper_;
   const OctreeOptions& options_;
   const uint32_t axes_;
   const WorkLimit& limit_;
   std::atomic<size_t> bytes_ = 0;  // of the pieces and branches that there are now
+  HeldBytes held_;                 // the same, for the work as a whole
 };
+
+size_t slot_count(const Branch& branch) {
+  size_t count = branch.slots.size();
+  for (const Branch& child : branch.children) count += slot_count(child);
+  return count;
+}
 
 /// Puts a branch and what is below it in its place in the tree.
 void flatten(Octree& tree, size_t number, const Branch& branch) {
@@ -144,8 +176,11 @@ Octree build_octree(std::span<const Reference> references, const Clipper& clippe
   }
   const double most =
       std::min(static_cast<double>(kMaxReferences), options.cap * static_cast<double>(references.size()));
-  const Branch root = OctreeBuilder(clipper, options, tree.axes, limit).build(references, tree.bounds, most);
+  OctreeBuilder builder(clipper, options, tree.axes, limit);  // it accounts for the branches
+  const Branch root = builder.build(references, tree.bounds, most);
   tree.nodes.resize(1);
+  tree.slots.reserve(slot_count(root));
+  const HeldBytes held(tree.slots.capacity() * sizeof(LeafSlot));
   flatten(tree, 0, root);
   tree.nodes.shrink_to_fit();
   tree.slots.shrink_to_fit();

@@ -14,7 +14,7 @@ constexpr OptionSpec kReinsertionOptions[] = {
 constexpr OptimiserEntry kOptimisers[] = {
     {"reinsertion", "moves subtrees to where they add least to the surface area, many at a time",
      "Meister, Bittner: Parallel Reinsertion for Bounding Volume Hierarchy Optimization, 2018", kReinsertionOptions,
-     optimise_reinsertion},
+     optimise_reinsertion, 176},
 };
 
 }  // namespace

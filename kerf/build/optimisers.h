@@ -16,6 +16,7 @@ struct OptimiserEntry {
   std::string_view source;
   std::span<const OptionSpec> options;
   Bvh (*optimise)(Bvh bvh, const OptionValues& options, const WorkLimit& limit);
+  size_t bytes_per_reference;  ///< what it takes for each slot at its peak, at most, both trees included
 };
 
 /// All optimisers. The same tree gives the same, byte for byte, for any number of threads.

@@ -16,14 +16,17 @@ class Joining {
   Joining(JoinTree& tree, uint32_t radius, const WorkLimit& limit)
       : tree_(tree), radius_(radius), limit_(limit), clusters_(tree.references) {
     next_.resize(clusters_.size());
+    held_.set(clusters_.size() * (2 * Clusters::kBytes + sizeof(uint32_t)));
   }
 
   void join_all() {
+    limit_.plan(static_cast<double>(clusters_.size()));
     while (clusters_.size() > 1) {
-      limit_.check();
+      const size_t before = clusters_.size();
       clusters_.find_partners(radius_, partners_);
       if (count_pairs() < clusters_.size() / kFewest) pair_in_order();
       join_pairs();
+      limit_.advance(static_cast<double>(before - clusters_.size()));
     }
     tree_.root = clusters_.number(0);
   }
@@ -102,6 +105,7 @@ class Joining {
   uint32_t radius_;
   const WorkLimit& limit_;
   Clusters clusters_, next_;
+  HeldBytes held_;
   std::vector<uint32_t> partners_;
   std::vector<Block> blocks_;
   size_t joined_ = 0;  ///< joins made
@@ -116,8 +120,11 @@ Bvh build_ploc(BuildInput input, const OptionValues& options) {
   detail::check_depth(count, shared);
   input.limit.check(count * kJoinTreeBytes);  // clusters took less before
   JoinTree tree;
-  tree.references = morton_order(std::move(input.references), input.limit).references;
-  tree.joins.resize(count - 1);
+  {
+    const ProgressPart part(input.limit, 0.2);
+    tree.take(morton_order(std::move(input.references), input.limit).references);
+  }
+  const ProgressPart part(input.limit, 0.9);
   Joining(tree, static_cast<uint32_t>(options["radius"]), input.limit).join_all();
   return make_bvh(std::move(tree), shared, input.limit);
 }

@@ -17,7 +17,8 @@ inline float center2(const Reference& reference, uint32_t axis) {
 /// References that are reordered in place: the base of the partitions that need no sorting.
 class ReferenceOrder {
  public:
-  explicit ReferenceOrder(std::vector<Reference> references) : references_(std::move(references)) {}
+  explicit ReferenceOrder(std::vector<Reference> references)
+      : references_(std::move(references)), held_(references_.capacity() * sizeof(Reference)) {}
 
   Subset whole() const {
     Subset subset{0, static_cast<uint32_t>(references_.size()), {}, {}};
@@ -26,6 +27,10 @@ class ReferenceOrder {
   }
 
   const Reference& reference(uint32_t i) const { return references_[i]; }
+  void free_references() {
+    std::vector<Reference>().swap(references_);
+    held_.release();
+  }
 
   /// Equal counts along the axis where the centres spread most. Ties are broken by primitive, so the outcome is one.
   Halves halve(const Subset& subset) {
@@ -82,6 +87,7 @@ class ReferenceOrder {
   }
 
   std::vector<Reference> references_;
+  HeldBytes held_;
 };
 
 }  // namespace kerf

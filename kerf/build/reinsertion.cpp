@@ -115,6 +115,7 @@ std::vector<uint32_t> largest_nodes(const MovableTree& tree, double share) {
   constexpr size_t kFew = 1024;  // hardly cost anything
   const auto wanted = std::max(kFew, static_cast<size_t>(std::ceil(share * static_cast<double>(nodes.size()))));
   if (wanted >= nodes.size()) return nodes;
+  const HeldBytes held(tree.end() * (sizeof(double) + sizeof(uint32_t)));
   std::vector<double> areas(tree.end());
   parallel_for(nodes.size(), 16384, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) areas[nodes[i]] = half_area(tree[nodes[i]].bounds());
@@ -130,18 +131,29 @@ std::vector<uint32_t> largest_nodes(const MovableTree& tree, double share) {
 std::vector<Move> find_moves(const MovableTree& tree, const std::vector<uint32_t>& nodes, const WorkLimit& limit) {
   constexpr size_t kGrain = 256;
   std::vector<std::vector<Move>> blocks((nodes.size() + kGrain - 1) / kGrain);
+  limit.plan(static_cast<double>(nodes.size()));
   parallel_for(nodes.size(), kGrain, [&](size_t begin, size_t end) {
-    limit.check();
     Search search(tree);
     for (size_t i = begin; i < end; ++i) {
       const Move move = search.find(nodes[i]);
       if (move.target != 0) blocks[begin / kGrain].push_back(move);
     }
+    limit.advance(static_cast<double>(end - begin));
   });
   std::vector<Move> moves;
-  for (const std::vector<Move>& block : blocks) moves.insert(moves.end(), block.begin(), block.end());
-  std::sort(moves.begin(), moves.end(),
-            [](const Move& a, const Move& b) { return a.saving != b.saving ? a.saving > b.saving : a.node < b.node; });
+  size_t found = 0;
+  for (const std::vector<Move>& block : blocks) found += block.size();
+  const HeldBytes held(2 * found * sizeof(Move));
+  moves.reserve(found);
+  for (std::vector<Move>& block : blocks) {
+    moves.insert(moves.end(), block.begin(), block.end());
+    std::vector<Move>().swap(block);
+  }
+  LimitWatch watch;
+  std::sort(moves.begin(), moves.end(), [&](const Move& a, const Move& b) {
+    watch.step();
+    return a.saving != b.saving ? a.saving > b.saving : a.node < b.node;
+  });
   return moves;
 }
 
@@ -164,13 +176,15 @@ bool make_moves(MovableTree& tree, const std::vector<Move>& moves, const WorkLim
 
 Bvh optimise_reinsertion(Bvh bvh, const OptionValues& options, const WorkLimit& limit) {
   if (bvh.nodes.empty()) return bvh;
-  // The tree to work on, the moves, the tree to return.
-  constexpr size_t kPerNode = sizeof(MovableTree::Node) + 2 * sizeof(Move) + sizeof(BvhNode) + 8;
-  limit.check(bvh.nodes.size() * kPerNode + bvh.bytes());
+  limit.check(MovableTree::bytes_for(bvh) + bvh.bytes());
+  HeldBytes given(bvh.bytes());
+  const HeldBytes held(MovableTree::bytes_for(bvh));
   MovableTree tree(bvh);
   std::vector<BvhNode>().swap(bvh.nodes);
+  given.set(bvh.bytes());
   const auto iterations = static_cast<uint32_t>(options["iterations"]);
   for (uint32_t i = 0; i < iterations; ++i) {
+    const ProgressPart part(limit, 1.0 / (iterations - i));
     if (!make_moves(tree, find_moves(tree, largest_nodes(tree, options["share"]), limit), limit)) break;
   }
   limit.check();

@@ -90,6 +90,8 @@ Pieces cut_all(std::span<const Reference> across, const SpatialPlane& plane, con
 SpatialOrder::SpatialOrder(std::vector<Reference> references, size_t room)
     : ReferenceOrder(std::move(references)), whole_(ReferenceOrder::whole()) {
   whole_.spare = static_cast<uint32_t>(room - references_.size());
+  const HeldBytes old(references_.capacity() * sizeof(Reference));  // while they are copied
+  held_.set(room * sizeof(Reference));
   references_.resize(room);
 }
 

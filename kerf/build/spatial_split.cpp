@@ -110,15 +110,29 @@ class SpatialSplit {
   double least_overlap_;
 };
 
+/// The slots of references in an order with free places.
+std::vector<LeafSlot> slots_of(const SpatialOrder& order) {
+  std::vector<LeafSlot> slots(order.whole().room());
+  parallel_for(slots.size(), 65536, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const Reference& reference = order.reference(static_cast<uint32_t>(i));
+      slots[i] = {reference.geometry, reference.primitive};
+    }
+  });
+  return slots;
+}
+
 /// The leaves' slots side by side. A primitive whose pieces ended in one leaf gets one slot there.
-void gather_slots(Bvh& bvh, const SpatialOrder& order) {
+void gather_slots(Bvh& bvh, const std::vector<LeafSlot>& spread) {
+  size_t count = 0;
+  for (const BvhNode& node : bvh.nodes) count += node.count;
+  bvh.slots.reserve(count);
   std::vector<LeafSlot> leaf;
+  LimitWatch watch;
   for (BvhNode& node : bvh.nodes) {
     if (!node.is_leaf()) continue;
-    leaf.clear();
-    for (uint32_t i = node.first; i < node.first + node.count; ++i) {
-      leaf.push_back({order.reference(i).geometry, order.reference(i).primitive});
-    }
+    watch.step();
+    leaf.assign(spread.begin() + node.first, spread.begin() + node.first + node.count);
     std::sort(leaf.begin(), leaf.end(), [](const LeafSlot& a, const LeafSlot& b) {
       return std::make_pair(a.geometry_bits, a.primitive) < std::make_pair(b.geometry_bits, b.primitive);
     });
@@ -150,16 +164,23 @@ Bvh build_spatial_split(BuildInput input, const OptionValues& options) {
     return build_top_down(partition, shared, input.limit);
   }
   if (input.references.empty()) return {};
-  const size_t room = most_references(input.references.size(), options["cap"]);
-  input.limit.check(room * (sizeof(Reference) + 3 * sizeof(BvhNode)));
+  // Where memory allows fewer pieces, fewer are made.
+  const size_t room =
+      std::max(input.references.size(), std::min({most_references(input.references.size(), options["cap"]), input.most,
+                                                  input.limit.bytes / kSpatialSplitBytes}));
   SpatialOrder order(std::move(input.references), room);
   SpatialSplit divider(order, input.clipper,
                        {bins, static_cast<uint32_t>(options["spatial_bins"]), options["overlap"], options["favour"]},
                        shared);
+  TreePart tree = detail::build_parts(divider, order.whole(), shared, input.limit);
+  HeldBytes slots(room * sizeof(LeafSlot));
+  const std::vector<LeafSlot> spread = slots_of(order);
+  order.free_references();
+  slots.set(2 * room * sizeof(LeafSlot));  // spread and gathered
   Bvh bvh;
-  bvh.nodes = detail::build_nodes(divider, order.whole(), shared, input.limit);
+  bvh.nodes = joined(std::move(tree));
   shrink_to_children(bvh.nodes);
-  gather_slots(bvh, order);
+  gather_slots(bvh, spread);
   return bvh;
 }
 

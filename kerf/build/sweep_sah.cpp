@@ -14,6 +14,7 @@ class SweepSah {
  public:
   explicit SweepSah(std::vector<Reference> references)
       : references_(std::move(references)), goes_right_(references_.size()) {
+    held_.set(references_.size() * (sizeof(Reference) + 3 * kLineBytes + 1));
     parallel_for(3, 1, [&](size_t begin, size_t end) {
       for (size_t axis = begin; axis < end; ++axis) sort(static_cast<uint32_t>(axis));
     });
@@ -26,6 +27,12 @@ class SweepSah {
   }
 
   const Reference& reference(uint32_t i) const { return references_[lines_[0].order[i]]; }
+  void free_references() {
+    std::vector<Reference>().swap(references_);
+    lines_ = {};
+    std::vector<uint8_t>().swap(goes_right_);
+    held_.release();
+  }
 
   /// The plane between two different centres with the least area times count, both sides added. References with equal
   /// centres stay together: a cut among them is no plane, and would depend on the order of the primitives.
@@ -54,6 +61,7 @@ class SweepSah {
     std::vector<uint32_t> order, scratch;
     std::vector<double> right_area;
   };
+  static constexpr size_t kLineBytes = 2 * sizeof(uint32_t) + sizeof(double);
 
   void sort(uint32_t axis) {
     Line& line = lines_[axis];
@@ -62,7 +70,9 @@ class SweepSah {
     line.right_area.resize(references_.size());
     for (uint32_t i = 0; i < line.order.size(); ++i) line.order[i] = i;
     // References come in the order of the caller's primitives, so the number is the tie-break by primitive.
+    LimitWatch watch;
     std::sort(line.order.begin(), line.order.end(), [&](uint32_t a, uint32_t b) {
+      watch.step();
       const float ca = center2(references_[a], axis), cb = center2(references_[b], axis);
       return ca != cb ? ca < cb : a < b;
     });
@@ -124,6 +134,7 @@ class SweepSah {
   std::vector<Reference> references_;
   std::array<Line, 3> lines_;
   std::vector<uint8_t> goes_right_;
+  HeldBytes held_;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -8,6 +9,7 @@
 #include "kerf/base/options.h"
 #include "kerf/base/parallel.h"
 #include "kerf/base/work_limit.h"
+#include "kerf/build/tree_part.h"
 #include "kerf/references/reference.h"
 #include "kerf/tree/bvh.h"
 
@@ -38,6 +40,8 @@ concept Partition = requires(P& p, const Subset& subset, uint32_t i) {
   /// Reorders the subset into two halves of equal counts; always possible for two and more.
   { p.halve(subset) } -> std::same_as<Halves>;
   { p.reference(i) } -> std::same_as<const Reference&>;
+  /// They are not asked for any more.
+  p.free_references();
 };
 
 /// What all top-down builders share.
@@ -84,45 +88,66 @@ concept Divider = requires(D& d, const Subset& subset, uint32_t depth) {
   { d.divide(subset, depth) } -> std::same_as<std::optional<Halves>>;
 };
 
-/// The recursion. Every subset has its own stretch of the node array, so that subtrees can be built at once and the
-/// result does not depend on which came first: the nodes below the root of a subset take at most 2 room() - 2 places
-/// from `place` on, the root's two children the first two of them.
+inline double work_in(const Subset& subset) { return work_of_dividing(subset.room()); }
+
+/// The recursion. A subset of many references is a task that gives its halves to others; one of few makes all nodes
+/// below it, in the order of the finished tree. So the result does not depend on which came first, and what is made is
+/// no larger than it has to be.
 template <Divider D>
 class Recursion {
  public:
-  Recursion(D& divider, bool larger_first, const WorkLimit& limit, std::vector<BvhNode>& nodes)
-      : divider_(divider), larger_first_(larger_first), limit_(limit), nodes_(nodes) {}
+  Recursion(D& divider, bool larger_first, const WorkLimit& limit)
+      : divider_(divider), larger_first_(larger_first), limit_(limit) {}
 
-  void build(const Subset& subset, uint32_t node, size_t place, uint32_t depth) {
+  TreePart build(const Subset& subset, uint32_t depth) {
+    TreePart part;
+    if (subset.count() < kParallelCount) {
+      part.below.reserve(2 * size_t{subset.count()});
+      part.root = build_below(subset, depth, part.below);
+      part.below = std::vector<BvhNode>(part.below);  // as long as it has to be
+      part.held.set(part.below.size() * sizeof(BvhNode));
+      limit_.advance(work_in(subset));
+      return part;
+    }
     const std::optional<Halves> halves = divider_.divide(subset, depth);
+    part.root = {subset.bounds.lower, subset.begin, subset.bounds.upper, subset.count()};
     if (!halves) {
-      nodes_[node] = {subset.bounds.lower, subset.begin, subset.bounds.upper, subset.count()};
-      return;
+      limit_.advance(work_in(subset));
+      return part;
     }
-    const auto child = static_cast<uint32_t>(place);
-    nodes_[node] = {subset.bounds.lower, child, subset.bounds.upper, 0};
-    // A ray that begins in both boxes visits the first child first: best the one with more to hit.
-    const uint32_t left = larger_first_ && halves->right.count() > halves->left.count() ? 1 : 0;
-    const auto build_left = [&] { build(halves->left, child + left, place + 2, depth + 1); };
-    const auto build_right = [&] {
-      build(halves->right, child + 1 - left, place + 2 * size_t{halves->left.room()}, depth + 1);
-    };
-    if (subset.count() >= kParallelCount) {
-      limit_.check();
-      parallel_invoke(build_left, build_right);
-    } else {
-      build_left();
-      build_right();
-    }
+    part.root.count = 0;
+    limit_.advance(work_in(subset) - work_in(halves->left) - work_in(halves->right));
+    part.child = std::make_unique<TreePart[]>(2);
+    const uint32_t left = place_of_left(*halves);
+    parallel_invoke([&] { part.child[left] = build(halves->left, depth + 1); },
+                    [&] { part.child[1 - left] = build(halves->right, depth + 1); });
+    return part;
   }
 
  private:
   static constexpr uint32_t kParallelCount = 2048;  // fewer references are not worth a task
 
+  /// A ray that begins in both boxes visits the first child first: best the one with more to hit.
+  uint32_t place_of_left(const Halves& halves) const {
+    return larger_first_ && halves.right.count() > halves.left.count() ? 1 : 0;
+  }
+
+  BvhNode build_below(const Subset& subset, uint32_t depth, std::vector<BvhNode>& nodes) {
+    const std::optional<Halves> halves = divider_.divide(subset, depth);
+    if (!halves) return {subset.bounds.lower, subset.begin, subset.bounds.upper, subset.count()};
+    const size_t child = nodes.size();
+    nodes.resize(child + 2);
+    const uint32_t left = place_of_left(*halves);
+    for (uint32_t i = 0; i < 2; ++i) {
+      const BvhNode made = build_below(i == left ? halves->left : halves->right, depth + 1, nodes);
+      nodes[child + i] = made;
+    }
+    return {subset.bounds.lower, static_cast<uint32_t>(child), subset.bounds.upper, 0};
+  }
+
   D& divider_;
   bool larger_first_;
   const WorkLimit& limit_;
-  std::vector<BvhNode>& nodes_;
 };
 
 /// The surface area heuristic (Goldsmith and Salmon 1987; MacDonald and Booth 1990): is a leaf at most as dear as two
@@ -159,41 +184,20 @@ class TopDown {
   const TopDownOptions& options_;
 };
 
-/// The same tree without the unused places, nodes in depth-first order of pairs.
-inline std::vector<BvhNode> compacted(const std::vector<BvhNode>& sparse) {
-  std::vector<BvhNode> nodes{sparse[0]};
-  std::vector<uint32_t> stack{0};
-  while (!stack.empty()) {
-    const uint32_t parent = stack.back();
-    stack.pop_back();
-    if (nodes[parent].is_leaf()) continue;
-    const uint32_t from = nodes[parent].first;
-    const auto child = static_cast<uint32_t>(nodes.size());
-    nodes[parent].first = child;
-    nodes.push_back(sparse[from]);
-    nodes.push_back(sparse[from + 1]);
-    stack.push_back(child + 1);
-    stack.push_back(child);
-  }
-  nodes.shrink_to_fit();
-  return nodes;
-}
-
-/// The nodes of the tree over `whole`, not empty; each leaf's `first` is the place of its first reference. Throws
+/// The tree over `whole`, not empty, in parts; each leaf's `first` is the place of its first reference. Throws
 /// Error(invalid_option) if the depth allowed cannot hold the references, Error(stopped) at the limit.
 template <Divider D>
-std::vector<BvhNode> build_nodes(D& divider, const Subset& whole, const TopDownOptions& options,
-                                 const WorkLimit& limit) {
+TreePart build_parts(D& divider, const Subset& whole, const TopDownOptions& options, const WorkLimit& limit) {
   check_depth(whole.count(), options);
-  limit.check(3 * size_t{whole.room()} * sizeof(BvhNode));
-  std::vector<BvhNode> sparse(2 * size_t{whole.room()} - 1);
-  Recursion<D>(divider, options.larger_first, limit, sparse).build(whole, 0, 1, 0);
-  return compacted(sparse);
+  limit.check(size_t{whole.room()} * (sizeof(Reference) + 2 * sizeof(BvhNode)));
+  limit.plan(work_in(whole));
+  return Recursion<D>(divider, options.larger_first, limit).build(whole, 0);
 }
 
 }  // namespace detail
 
-/// Builds a tree from the root down: recursion, leaf decision, depth bound and threads for every partition.
+/// Builds a tree from the root down: recursion, leaf decision, depth bound and threads for every partition, whose
+/// references are gone then.
 /// Throws Error(invalid_option) if the depth allowed cannot hold the references, Error(stopped) at the limit.
 template <Partition P>
 Bvh build_top_down(P& partition, const TopDownOptions& options, const WorkLimit& limit = {}) {
@@ -201,14 +205,17 @@ Bvh build_top_down(P& partition, const TopDownOptions& options, const WorkLimit&
   if (whole.count() == 0) return {};
   Bvh bvh;
   detail::TopDown<P> divider(partition, options);
-  bvh.nodes = detail::build_nodes(divider, whole, options, limit);
+  TreePart tree = detail::build_parts(divider, whole, options, limit);
   bvh.slots.resize(whole.count());
+  const HeldBytes slots(bvh.slots.size() * sizeof(LeafSlot));
   parallel_for(whole.count(), 65536, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const Reference& reference = partition.reference(static_cast<uint32_t>(i));
       bvh.slots[i] = {reference.geometry, reference.primitive};
     }
   });
+  partition.free_references();
+  bvh.nodes = joined(std::move(tree));
   return bvh;
 }
 

@@ -30,6 +30,8 @@ class Filling {
     const size_t count = (references.size() + stride - 1) / stride;
     std::vector<std::vector<Entry>> blocks((count + kGrain - 1) / kGrain);
     std::atomic<size_t> total = 0;
+    const ProgressPart part(limit_, 0.5);  // for another try may follow
+    limit_.plan(static_cast<double>(count));
     parallel_for(count, kGrain, [&](size_t begin, size_t end) {
       std::vector<Entry>& out = blocks[begin / kGrain];
       size_t told = 0;  // entries of `out` that `total` knows of
@@ -44,8 +46,11 @@ class Filling {
         });
       }
       total += out.size() - told;
+      out.shrink_to_fit();
       limit_.check(total * (sizeof(Entry) + sizeof(LeafSlot)));
+      limit_.advance(static_cast<double>(end - begin));
     });
+    const HeldBytes held(total * sizeof(Entry));
     if (static_cast<double>(total) > most) blocks.clear();
     return blocks;
   }
@@ -71,8 +76,13 @@ class Filling {
 
 /// Sorts the entries by cell, within a cell by reference.
 void fill(UniformGrid& grid, std::span<const Reference> references, const std::vector<std::vector<Entry>>& blocks) {
-  grid.offsets.assign(size_t{grid.resolution(kX)} * grid.resolution(kY) * grid.resolution(kZ) + 1, 0);
+  size_t total = 0;
+  for (const std::vector<Entry>& block : blocks) total += block.size();
+  const size_t cells = size_t{grid.resolution(kX)} * grid.resolution(kY) * grid.resolution(kZ) + 1;
+  const HeldBytes held(total * (sizeof(Entry) + sizeof(LeafSlot)) + cells * sizeof(uint32_t));
+  grid.offsets.assign(cells, 0);
   for (const std::vector<Entry>& block : blocks) {
+    check_current_limit();
     for (const Entry& entry : block) ++grid.offsets[entry.cell + 1];
   }
   uint32_t sum = 0;
@@ -83,6 +93,7 @@ void fill(UniformGrid& grid, std::span<const Reference> references, const std::v
   }
   grid.slots.resize(sum);
   for (const std::vector<Entry>& block : blocks) {
+    check_current_limit();
     for (const Entry& entry : block) {
       const Reference& reference = references[entry.reference];
       grid.slots[grid.offsets[entry.cell + 1]++] = {reference.geometry, reference.primitive};

@@ -163,18 +163,16 @@ class Attempts {
   std::optional<GuidedPieces> fitting() {
     if (most_ <= input_.whole.size()) return std::nullopt;
     double too_many = 1, fits = 1;  // of strictness
-    std::optional<GuidedPieces> best;
-    while (!best && fits < kStrictest) best = at(fits *= 2);
-    for (int step = 0; step < kSteps && best; ++step) {
+    std::optional<GuidedPieces> pieces;
+    while (!pieces && fits < kStrictest) pieces = at(fits *= 2);
+    if (!pieces) return std::nullopt;
+    for (int step = 0; step < kSteps; ++step) {
       const double between = std::sqrt(std::max(too_many, fits / 2) * fits);
-      if (auto pieces = at(between)) {
-        best = std::move(pieces);
-        fits = between;
-      } else {
-        too_many = between;
-      }
+      pieces.reset();  // two attempts at once would take twice the memory
+      pieces = at(between);
+      (pieces ? fits : too_many) = between;
     }
-    return best;
+    return pieces ? std::move(pieces) : at(fits);
   }
 
  private:
@@ -194,8 +192,7 @@ SplitResult split_automatically(const SplitInput& input, const AutomaticSplit& o
   }
   const std::span<const Reference> whole = input.whole;
   SplitResult result{{}, std::numeric_limits<double>::quiet_NaN(), false, SplitChoice{}};
-  // At the peak: the pieces of one attempt beside those of the best before.
-  input.limit.check(2 * most_references(whole.size(), options.cap) * sizeof(Reference));
+  input.limit.check(whole.size() * sizeof(Reference));
   const Areas areas = measure(whole);
   if (whole.empty() || !(areas.whole > 0)) {
     result.choice->curve = {{1, 0}};

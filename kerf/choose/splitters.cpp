@@ -12,6 +12,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr double kMostPerPrimitive = 1000;
 
+// The primitives and what was cut of them; the pieces of two attempts beside each other, and those that are gathered.
+constexpr size_t kSplitPrimitiveBytes = 2 * sizeof(Reference), kSplitReferenceBytes = 3 * sizeof(Reference);
+constexpr size_t kSideBytes = 256;  // of a triangle's sides by place, to be refined by area
+
 constexpr OptionSpec kEarlySplitOptions[] = {
     with_auto({"sa_max", "surface area above which a box is cut, all six faces, squared scene units; auto: chosen",
                kAutomatic, 0, kInfinity, false, true}),
@@ -26,16 +30,16 @@ SplitResult split_early(const SplitInput& input, const OptionValues& values) {
       throw Error(ErrorCode::invalid_option, "early_split", "budget replaces sa_max and cap: give one or the other");
     }
     SplitResult result =
-        early_split(input.whole, input.clipper, EarlySplit::with_budget(values["budget"]), input.limit);
-    result.capped = false;  // no limit was asked for
+        early_split(input.whole, input.clipper, EarlySplit::with_budget(input.cap(values["budget"])), input.limit);
+    result.capped = input.cap(values["budget"]) < values["budget"];  // no other limit was asked for
     return result;
   }
   if (is_automatic(values["sa_max"])) {
     AutomaticSplit automatic;
-    if (values.is_set("cap")) automatic.cap = values["cap"];
+    automatic.cap = input.cap(values.is_set("cap") ? values["cap"] : automatic.cap);
     return split_automatically(input, automatic);
   }
-  return early_split(input.whole, input.clipper, {values["sa_max"], values["cap"]}, input.limit);
+  return early_split(input.whole, input.clipper, {values["sa_max"], input.cap(values["cap"])}, input.limit);
 }
 
 constexpr std::string_view kMeasures[] = {"edge", "area"};  // in the order of Refinement::Measure
@@ -55,9 +59,9 @@ SplitResult split_by_refinement(const SplitInput& input, const OptionValues& val
       throw Error(ErrorCode::invalid_option, "refine", "budget replaces edge, area and cap: give one or the other");
     }
     const auto measure = static_cast<Refinement::Measure>(static_cast<uint32_t>(values["by"]));
-    SplitResult result =
-        refine(input.geometries, input.whole, Refinement::with_budget(values["budget"], measure), input.limit);
-    result.capped = false;  // no limit was asked for
+    SplitResult result = refine(input.geometries, input.whole,
+                                Refinement::with_budget(input.cap(values["budget"]), measure), input.limit);
+    result.capped = input.cap(values["budget"]) < values["budget"];  // no other limit was asked for
     return result;
   }
   if (values.is_set("by")) throw Error(ErrorCode::invalid_option, "refine", "by is of no meaning without budget");
@@ -65,16 +69,17 @@ SplitResult split_by_refinement(const SplitInput& input, const OptionValues& val
     throw Error(ErrorCode::invalid_option, "refine", "edge and area are two measures: give one");
   }
   const Refinement::Measure measure = by_area ? Refinement::Measure::area : Refinement::Measure::edge;
-  return refine(input.geometries, input.whole, {measure, values[by_area ? "area" : "edge"], values["cap"]},
+  return refine(input.geometries, input.whole, {measure, values[by_area ? "area" : "edge"], input.cap(values["cap"])},
                 input.limit);
 }
 
 constexpr SplitterEntry kSplitters[] = {
     {"early_split", "cuts large primitives into several tight boxes before a tree is built",
-     "Ernst, Greiner: Early Split Clipping for Bounding Volume Hierarchies, 2007", kEarlySplitOptions, split_early},
+     "Ernst, Greiner: Early Split Clipping for Bounding Volume Hierarchies, 2007", kEarlySplitOptions, split_early,
+     kSplitPrimitiveBytes, kSplitReferenceBytes},
     {"refine", "cuts large triangles into small ones, for the boxes of a tree only, before it is built",
      "Ernst, Greiner: Early Split Clipping for Bounding Volume Hierarchies, 2007, section 4", kRefineOptions,
-     split_by_refinement},
+     split_by_refinement, kSplitPrimitiveBytes + kSideBytes, kSplitReferenceBytes},
 };
 
 }  // namespace

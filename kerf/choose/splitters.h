@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string_view>
 
@@ -16,6 +17,12 @@ struct SplitInput {
   std::span<const Reference> whole;
   Clipper clipper;
   WorkLimit limit;
+  size_t most = kMaxReferences;  ///< references, whatever the options say
+
+  /// The cap on references per primitive that keeps both `wanted` and `most`.
+  double cap(double wanted) const {
+    return whole.empty() ? wanted : std::min(wanted, static_cast<double>(most) / static_cast<double>(whole.size()));
+  }
 };
 
 /// One splitter of the menu: references in, more references out.
@@ -25,6 +32,8 @@ struct SplitterEntry {
   std::string_view source;
   std::span<const OptionSpec> options;
   SplitResult (*split)(const SplitInput& input, const OptionValues& options);
+  /// What it takes at its peak, at most: for each primitive, and for each reference that it may make.
+  size_t bytes_per_primitive, bytes_per_reference;
 };
 
 std::span<const SplitterEntry> splitters();

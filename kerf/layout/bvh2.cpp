@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "kerf/base/parallel.h"
+#include "kerf/base/work_limit.h"
 
 namespace kerf {
 namespace {
@@ -35,6 +36,7 @@ Bvh2 make_bvh2(Bvh&& bvh) {
     return Bvh2Child{node.lower, node.is_leaf() ? node.first : (node.first - 1) / 2, node.upper, node.count};
   };
   layout.root = child_of(bvh.nodes[0]);
+  const HeldBytes held(bvh.nodes.size() / 2 * sizeof(Bvh2Node));
   layout.nodes.resize((bvh.nodes.size() - 1) / 2);
   parallel_for(layout.nodes.size(), 16384, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {

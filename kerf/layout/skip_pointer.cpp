@@ -2,15 +2,20 @@
 
 #include <utility>
 
+#include "kerf/base/work_limit.h"
+
 namespace kerf {
 
 SkipPointerBvh make_skip_pointer_bvh(Bvh&& bvh) {
   SkipPointerBvh layout;
   if (bvh.nodes.empty()) return layout;
+  const HeldBytes held(bvh.nodes.size() * sizeof(SkipPointerNode));
   layout.nodes.reserve(bvh.nodes.size());
+  LimitWatch watch;
   constexpr uint32_t kAfter = 0x80000000U;  // not a node of the Bvh, but an inner one of the layout that ends here
   std::vector<uint32_t> stack{0};
   while (!stack.empty()) {
+    watch.step();
     const uint32_t number = stack.back();
     stack.pop_back();
     const auto place = static_cast<uint32_t>(layout.nodes.size());

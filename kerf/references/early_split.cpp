@@ -48,6 +48,7 @@ SplitResult split_to_fit(std::span<const Reference> whole, const Clipper& clippe
   SplitResult result{{whole.begin(), whole.end()}, 0, true};
   for (const Reference& reference : whole) result.limit = std::max(result.limit, surface_area(reference.bounds()));
   result.limit = lower_to_fit(result.limit, too_small, whole.size(), most, [&](double sa_max) -> std::optional<size_t> {
+    const HeldBytes held(result.references.capacity() * sizeof(Reference));
     auto finer = split_all(result.references, clipper, sa_max, most, limit);
     if (!finer) return std::nullopt;
     result.references = std::move(*finer);

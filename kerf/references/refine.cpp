@@ -90,6 +90,7 @@ SplitResult refine(std::span<const Geometry> geometries, std::span<const Referen
   SplitResult result{{whole.begin(), whole.end()}, 0, true};
   result.limit =
       lower_to_fit(refiner.largest(), options.limit, whole.size(), most, [&](double size) -> std::optional<size_t> {
+        const HeldBytes held(result.references.capacity() * sizeof(Reference));
         auto finer = try_limit(size);
         if (!finer) return std::nullopt;
         result.references = std::move(*finer);

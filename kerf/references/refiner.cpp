@@ -4,6 +4,7 @@
 #include <string>
 
 #include "kerf/base/error.h"
+#include "kerf/base/work_limit.h"
 #include "kerf/references/welded_sides.h"
 
 namespace kerf {
@@ -43,7 +44,9 @@ Refiner::Refiner(std::span<const Geometry> geometries, std::span<const Reference
     sides_.resize(whole.size());
   }
   WeldedSides welded;
+  LimitWatch watch;
   for (size_t i = 0; i < whole.size(); ++i) {
+    watch.step();
     const auto& shapes = geometries[whole[i].geometry].shapes;
     if (std::holds_alternative<TriangleMesh>(shapes)) {
       const Triangle triangle = triangle_of(i);
@@ -63,7 +66,9 @@ void Refiner::set_limit(double limit) {
   limit_ = limit;
   if (measure_ != Refinement::Measure::area) return;
   std::fill(side_levels_.begin(), side_levels_.end(), uint8_t{0});
+  LimitWatch watch;
   for (size_t i = 0; i < whole_.size(); ++i) {
+    watch.step();
     if (!(sizes_[i] > limit)) continue;
     const auto levels = static_cast<uint8_t>(levels_above(sizes_[i], limit, 4));
     for (const uint32_t side : sides_[i]) side_levels_[side] = std::max(side_levels_[side], levels);

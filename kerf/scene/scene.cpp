@@ -10,6 +10,7 @@
 #include "kerf/base/error.h"
 #include "kerf/base/fp_environment.h"
 #include "kerf/base/parallel.h"
+#include "kerf/references/box_around.h"
 #include "kerf/scene/pipeline.h"
 
 namespace kerf {
@@ -28,15 +29,41 @@ constexpr TraceTable kNotBuilt = {
     [](const void*, std::span<const Ray>, std::span<Hit>, TraceCounts&) { refuse_not_built(); },
 };
 
-/// Seconds since the last call.
-class Stopwatch {
+// How long stages take, about, in shares of each other.
+constexpr double kReferencesWeight = 2, kSplitterWeight = 20, kBuilderWeight = 40, kOptimiserWeight = 40,
+                 kStructureWeight = 100, kLayoutWeight = 2, kMeasureWeight = 5;
+
+double weight_of(const Stage& stage) {
+  const std::string_view kind = stage.entry->kind;
+  if (kind == "splitter") return kSplitterWeight;
+  if (kind == "builder") return kBuilderWeight;
+  if (kind == "optimiser") return kOptimiserWeight;
+  return kind == "structure" ? kStructureWeight : 0;
+}
+
+/// The stages of a build, one after another: how long each takes, and which part of the progress is its own.
+class Stages {
  public:
+  Stages(const Pipeline& pipeline, WorkMeter& meter)
+      : meter_(meter), all_(kReferencesWeight + kLayoutWeight + kMeasureWeight) {
+    for (const Stage& stage : pipeline.stages) all_ += weight_of(stage);
+  }
+
+  void begin(std::string_view what, double weight) {
+    begun_ += weight;
+    meter_.begin_stage(what, begun_ / all_);
+  }
+  void begin(const Stage& stage) { begin(stage.entry->name, weight_of(stage)); }
+
+  /// Seconds since the last call.
   double lap() {
     const auto now = std::chrono::steady_clock::now();
     return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
   }
 
  private:
+  WorkMeter& meter_;
+  double all_, begun_ = 0;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
@@ -81,6 +108,12 @@ void check_refits(const Pipeline& pipeline) {
   }
 }
 
+size_t count_primitives(std::span<const Geometry> geometries) {
+  size_t count = 0;
+  for (const Geometry& geometry : geometries) count += primitive_count(geometry);
+  return count;
+}
+
 }  // namespace
 
 struct Scene::Added {
@@ -94,84 +127,102 @@ struct Scene::Built {
   Box3f bounds;
   BuildReport report;
   size_t kept = 0;               ///< primitives that are in the structure
+  size_t most_references = 0;    ///< that the limit of bytes allows
   Structure* movable = nullptr;  ///< the same structure, if it is one that can be refitted
   std::optional<RestPose> rest;  ///< with BuildOptions::refittable
 
-  Built(std::vector<Geometry> added, const Pipeline& pipeline, const BuildOptions& options);
-  StructureInput make_input(const Pipeline& pipeline, const BuildOptions& options, Stopwatch& watch);
-  void make_structure(StructureInput input, std::span<const Stage> stages, bool refittable, Stopwatch& watch);
+  Built(std::vector<Geometry> added, const Pipeline& pipeline, const BuildOptions& options, const WorkLimit& limit);
+  StructureInput make_input(const Pipeline& pipeline, const BuildOptions& options, const WorkLimit& limit,
+                            Stages& stages);
+  void make_structure(StructureInput input, std::span<const Stage> makers, bool refittable, Stages& stages);
   void describe();
 };
 
-Scene::Built::Built(std::vector<Geometry> added, const Pipeline& pipeline, const BuildOptions& options)
+Scene::Built::Built(std::vector<Geometry> added, const Pipeline& pipeline, const BuildOptions& options,
+                    const WorkLimit& limit)
     : geometries(std::move(added)) {
-  Stopwatch watch;
+  Stages stages(pipeline, *limit.meter);
   report.structure = pipeline.text();
-  StructureInput input = make_input(pipeline, options, watch);
+  StructureInput input = make_input(pipeline, options, limit, stages);
   const size_t first = pipeline.stages.front().entry->kind == "splitter" ? 1 : 0;
-  make_structure(std::move(input), std::span(pipeline.stages).subspan(first), options.refittable, watch);
+  make_structure(std::move(input), std::span(pipeline.stages).subspan(first), options.refittable, stages);
+  stages.begin("measure", kMeasureWeight);
   describe();
+  report.peak_bytes = std::max(limit.meter->peak(), report.bytes);
   const auto& s = report.seconds;
   report.seconds.total = s.references + s.split + s.build + s.optimise + s.layout;
 }
 
-StructureInput Scene::Built::make_input(const Pipeline& pipeline, const BuildOptions& options, Stopwatch& watch) {
+StructureInput Scene::Built::make_input(const Pipeline& pipeline, const BuildOptions& options, const WorkLimit& limit,
+                                        Stages& stages) {
   report.sa_max = std::numeric_limits<double>::infinity();
-  for (const Geometry& geometry : geometries) report.primitives += primitive_count(geometry);
+  report.primitives = count_primitives(geometries);
+  most_references = kerf::memory_need(pipeline, report.primitives, limit.bytes).most_references;
+  stages.begin("references", kReferencesWeight);
+  HeldBytes held(report.primitives * sizeof(Reference));
   PrimitiveReferences whole = make_references(geometries, options.skip_invalid, options.refittable);
+  kept = whole.references.size();
   report.invalid = whole.invalid;
   report.degenerate = whole.degenerate;
-  kept = whole.references.size();
-  for (const Reference& reference : whole.references) bounds.extend(reference.bounds());
-  report.seconds.references = watch.lap();
+  bounds = box_around(whole.references);
+  report.seconds.references = stages.lap();
 
   const std::span<const Geometry> all = geometries;
-  StructureInput input{all, std::move(whole.references), false, options.limit};
+  StructureInput input{all, std::move(whole.references), false, limit, std::move(held)};
   input.limit.check();
   if (const auto* splitter = std::get_if<const SplitterEntry*>(&pipeline.stages.front().entry->entry)) {
-    SplitResult split = (*splitter)->split({all, input.references, geometry_clipper(all), options.limit},
+    stages.begin(pipeline.stages.front());
+    SplitResult split = (*splitter)->split({all, input.references, geometry_clipper(all), limit, most_references},
                                            pipeline.stages.front().options);
     input.references = std::move(split.references);
+    input.held.set(input.references.capacity() * sizeof(Reference));
     input.is_split = input.references.size() > kept;
     report.sa_max = split.limit;
     report.capped = split.capped;
     report.choice = std::move(split.choice);
   }
-  report.seconds.split = watch.lap();
+  report.seconds.split = stages.lap();
   return input;
 }
 
-/// `stages`: a structure, or a builder, then any number of optimisers, then a layout or none.
-void Scene::Built::make_structure(StructureInput input, std::span<const Stage> stages, bool refittable,
-                                  Stopwatch& watch) {
-  if (const auto* entry = std::get_if<const StructureEntry*>(&stages[0].entry->entry)) {
-    structure = (*entry)->build(std::move(input), stages[0].options);
-    report.seconds.build = watch.lap();
+/// `makers`: a structure, or a builder, then any number of optimisers, then a layout or none. What a maker is given it
+/// accounts for itself.
+void Scene::Built::make_structure(StructureInput input, std::span<const Stage> makers, bool refittable,
+                                  Stages& stages) {
+  stages.begin(makers[0]);
+  if (const auto* entry = std::get_if<const StructureEntry*>(&makers[0].entry->entry)) {
+    structure = (*entry)->build(std::move(input), makers[0].options);
+    report.seconds.build = stages.lap();
     return;
   }
-  const auto* last = std::get_if<const LayoutEntry*>(&stages.back().entry->entry);
+  const auto* last = std::get_if<const LayoutEntry*>(&makers.back().entry->entry);
   const LayoutEntry& layout = last != nullptr ? **last : layouts().front();
-  const std::span<const Stage> makers = stages.first(stages.size() - (last != nullptr ? 1 : 0));
+  const OptionValues layout_options = last != nullptr ? makers.back().options : OptionValues(layout.options);
+  if (last != nullptr) makers = makers.first(makers.size() - 1);
   const auto& builder = *std::get<const BuilderEntry*>(makers[0].entry->entry);
   const std::span<const Geometry> all = geometries;
-  Bvh bvh = builder.build({std::exchange(input.references, {}), geometry_clipper(all), input.limit},
-                          options_for(makers[0], layout));
+  input.held.release();
+  BuildInput given(std::exchange(input.references, {}), geometry_clipper(all), input.limit);
+  given.most = most_references;
+  Bvh bvh = builder.build(std::move(given), options_for(makers[0], layout));
+  HeldBytes tree(bvh.bytes());
   input.is_split = bvh.slots.size() > kept;  // some builders split
   if (input.is_split) mark_repeated(bvh, geometries);
-  report.seconds.build = watch.lap();
+  report.seconds.build = stages.lap();
   for (const Stage& stage : makers.subspan(1)) {
+    stages.begin(stage);
     const auto& optimiser = *std::get<const OptimiserEntry*>(stage.entry->entry);
+    tree.release();
     bvh = optimiser.optimise(std::move(bvh), options_for(stage, layout), input.limit);
+    tree.set(bvh.bytes());
   }
-  report.seconds.optimise = watch.lap();
-  if (refittable) {
-    rest.emplace(bvh, geometries, find_left_out(geometries), kept);
-  }
-  std::unique_ptr<Structure> made =
-      layout.make(std::move(bvh), input, last != nullptr ? stages.back().options : OptionValues(layout.options));
+  report.seconds.optimise = stages.lap();
+  stages.begin(layout.name, kLayoutWeight);
+  if (refittable) rest.emplace(bvh, geometries, find_left_out(geometries), kept);
+  std::unique_ptr<Structure> made = layout.make(std::move(bvh), input, layout_options);
   movable = made.get();
   structure = std::move(made);
-  report.seconds.layout = watch.lap();
+  report.seconds.layout = stages.lap();
 }
 
 /// Reporting is not building, so no watch runs.
@@ -215,11 +266,27 @@ uint32_t Scene::add(Geometry geometry) {
 const BuildReport& Scene::build(const BuildOptions& options) {
   const Pipeline pipeline = parse_pipeline(options.structure);
   if (options.refittable) check_refits(pipeline);
+  const size_t needed = memory_need(options).least;
+  if (needed > options.limit.bytes) options.limit.check(needed);
+  WorkMeter meter(options.progress);
+  WorkLimit limit = options.limit;
+  limit.meter = &meter;
   std::unique_ptr<Built> built;
-  with_threads(options.threads, [&] {
+  const auto build_all = [&] {
     const StandardFloat standard;
-    built = std::make_unique<Built>(added_ ? added_->geometries : std::vector<Geometry>{}, pipeline, options);
-  });
+    const LimitScope scope(&limit);
+    meter.tell(true);
+    built = std::make_unique<Built>(added_ ? added_->geometries : std::vector<Geometry>{}, pipeline, options, limit);
+    meter.end();
+    meter.tell(true);
+    limit.check();
+  };
+  try {
+    with_threads(options.threads, build_all);
+  } catch (const Error&) {
+    meter.rethrow();
+    throw;
+  }
   built_ = std::move(built);
   table_ = &built_->structure->table();
   data_ = built_->structure->data();
@@ -240,6 +307,10 @@ const RefitReport& Scene::refit(std::span<const Geometry> moved, int threads) {
 }
 
 const RefitReport& Scene::refit(int threads) { return refit(geometries(), threads); }
+
+MemoryNeed Scene::memory_need(const BuildOptions& options) const {
+  return kerf::memory_need(parse_pipeline(options.structure), added_ ? count_primitives(added_->geometries) : 0);
+}
 
 const BuildReport& Scene::report() const {
   if (built_ == nullptr) refuse_not_built();

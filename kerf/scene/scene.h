@@ -10,6 +10,7 @@
 #include "kerf/geometry/hit.h"
 #include "kerf/geometry/ray.h"
 #include "kerf/references/split_result.h"
+#include "kerf/scene/memory_need.h"
 #include "kerf/scene/presets.h"
 #include "kerf/scene/refit.h"
 #include "kerf/scene/structure.h"
@@ -25,8 +26,14 @@ struct BuildOptions {
   std::string structure{kDefaultStructure};
   int threads = 0;            ///< 0: as many as the caller's arena has
   bool skip_invalid = false;  ///< drop primitives that are not finite or have a bad index, instead of an error
-  WorkLimit limit = {};       ///< when to give up
   bool refittable = false;    ///< keep what refit() needs, and primitives that may get an area
+  /// When to give up. A limit on bytes below what is possible is refused before work starts, see Scene::memory_need();
+  /// where it allows fewer references than a splitter would make, fewer are made.
+  WorkLimit limit = {};
+  /// Called with the share that is done, from 0 at once to 1 at the end, and what is being done; returns false to
+  /// cancel the build, which then throws Error(stopped). From whichever thread works, one at a time, some 20 times a
+  /// second at most; the share never falls. What it throws comes out of build().
+  WorkMeter::Progress progress = nullptr;
 };
 
 /// What a build did and what came of it.
@@ -43,6 +50,7 @@ struct BuildReport {
   bool capped = false;                ///< the limit asked for would have passed the cap on references, so it was raised
   std::optional<SplitChoice> choice;  ///< of automatic splitting: how far it went, and why
   size_t bytes = 0;                   ///< of what rays are traced through, without the caller's memory
+  size_t peak_bytes = 0;              ///< the most that the build's large arrays took at once, the outcome's included
   size_t nodes = 0, leaves = 0;
   uint32_t depth = 0;         ///< edges from the root to the deepest leaf
   uint32_t largest_leaf = 0;  ///< slots
@@ -79,7 +87,7 @@ class Scene {
 
   /// Makes what was added ready for queries; an empty scene hits nothing. Throws Error for a pipeline that is wrong
   /// (invalid_option), a primitive that is (invalid_geometry, naming the first and how many) or a limit that was
-  /// reached (stopped); the scene then answers as before.
+  /// reached or a progress() that returned false (stopped); the scene then answers as before.
   const BuildReport& build(const BuildOptions& options = {});
 
   /// Follows vertices that moved, without a new tree: boxes are made anew, what stands in which leaf stays. The tree
@@ -91,6 +99,9 @@ class Scene {
   /// The same for vertices that were changed where they are. After an Error(invalid_geometry) queries may miss what
   /// moved until a refit() that succeeds.
   const RefitReport& refit(int threads = 0);
+  /// What a build with these options would take: known before any work is done. Throws Error(invalid_option) for a
+  /// pipeline that is wrong.
+  MemoryNeed memory_need(const BuildOptions& options = {}) const;
 
   /// What the last build did. Throws Error(not_built) before the first.
   const BuildReport& report() const;

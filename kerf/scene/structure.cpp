@@ -9,7 +9,9 @@ namespace kerf {
 
 double Structure::cost() const {
   double root = 0, sum = 0;
+  LimitWatch watch;
   visit_nodes([&](const NodeView& node) {
+    watch.step();
     const double area = half_area(node.bounds);
     if (node.depth == 0) root = area;
     sum += area * (node.is_leaf ? static_cast<double>(node.slots.size()) : 1);
@@ -23,7 +25,9 @@ RefitOutcome Structure::refit(const Fragments&) {
 
 StructureStatistics measure(const Structure& structure) {
   StructureStatistics statistics;
+  LimitWatch watch;
   structure.visit_nodes([&](const NodeView& node) {
+    watch.step();
     ++statistics.nodes;
     statistics.depth = std::max(statistics.depth, node.depth);
     if (!node.is_leaf) return;

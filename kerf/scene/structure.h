@@ -24,6 +24,7 @@ struct StructureInput {
   std::vector<Reference> references;     ///< of whole primitives, or of pieces where a splitter came first
   bool is_split = false;                 ///< some primitive has more than one reference
   WorkLimit limit;                       ///< checked now and then
+  HeldBytes held;                        ///< of the references
 };
 
 /// One node, cell or leaf of a structure as study and tests see it.
@@ -79,7 +80,8 @@ struct LayoutEntry {
   uint32_t leaf_size;  ///< slots that a leaf of the Bvh may have at most; 0: any number
   /// The input's references are gone: they are in the Bvh.
   std::unique_ptr<Structure> (*make)(Bvh bvh, const StructureInput& input, const OptionValues& options);
-  bool refits = false;  ///< its structures can be refitted
+  bool is_bounded = true;  ///< it never takes more than a tree and its nodes once more
+  bool refits = false;     ///< its structures can be refitted
 };
 std::span<const LayoutEntry> layouts();
 
@@ -91,6 +93,7 @@ struct StructureEntry {
   std::span<const OptionSpec> options;
   bool takes_pieces;  ///< a splitter may stand before it
   std::unique_ptr<const Structure> (*build)(StructureInput input, const OptionValues& options);
+  size_t bytes_per_reference;  ///< what it takes for each reference at least
 };
 std::span<const StructureEntry> structures();
 

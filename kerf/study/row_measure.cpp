@@ -37,16 +37,17 @@ WorkLimit RowMeasure::limit() const {
   return limit;
 }
 
-std::unique_ptr<Scene> RowMeasure::built(const MeasuredRow& row) const {
+std::unique_ptr<Scene> RowMeasure::built(const MeasuredRow& row, WorkMeter::Progress progress) const {
   return std::make_unique<Scene>(build_scene(scene_, {.structure = row.pipeline,
                                                       .threads = options_.threads,
                                                       .skip_invalid = options_.skip_invalid,
-                                                      .limit = limit()}));
+                                                      .limit = limit(),
+                                                      .progress = std::move(progress)}));
 }
 
-void RowMeasure::build(MeasuredRow& row) const {
+void RowMeasure::build(MeasuredRow& row, WorkMeter::Progress progress) const {
   try {
-    row.scene = built(row);
+    row.scene = built(row, std::move(progress));
     row.report = row.scene->report();
     row.builds.push_back(row.report.seconds);
     if (row.report.bytes > options_.limit_bytes) {
@@ -114,7 +115,7 @@ void RowMeasure::time_since(Clock::time_point start, MeasuredRow& row, std::span
 
 void RowMeasure::time_build(MeasuredRow& row) const {
   try {
-    row.builds.push_back(built(row)->report().seconds);
+    row.builds.push_back(built(row, nullptr)->report().seconds);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::stopped) throw;
   } catch (const std::bad_alloc&) {  // what is there is kept

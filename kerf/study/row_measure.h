@@ -55,7 +55,8 @@ class RowMeasure {
   /// From now on.
   WorkLimit limit() const;
 
-  void build(MeasuredRow& row) const;
+  /// `progress` as that of BuildOptions.
+  void build(MeasuredRow& row, WorkMeter::Progress progress = nullptr) const;
   /// The work of all rays, kind by kind.
   void count(MeasuredRow& row, std::span<const StudyRays> rays) const;
   /// One more run over all rays, which were counted before, or over those of one kind, by number.
@@ -67,7 +68,7 @@ class RowMeasure {
  private:
   using Clock = std::chrono::steady_clock;
 
-  std::unique_ptr<Scene> built(const MeasuredRow& row) const;
+  std::unique_ptr<Scene> built(const MeasuredRow& row, WorkMeter::Progress progress) const;
   void time_since(Clock::time_point start, MeasuredRow& row, std::span<const StudyRays> rays, size_t kind) const;
 
   const SceneDescription& scene_;

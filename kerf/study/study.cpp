@@ -67,15 +67,15 @@ class Study {
   }
 
   /// False from the first time on that progress() wants no more.
-  bool tell(const Row& row, const char* what) {
+  bool tell(const Row& row, const char* what, double share = 0) {
     if (options_.progress && !is_stopped_) {
-      is_stopped_ = !options_.progress(done_ / steps_, input_.name + ": " + what + " " + row.pipeline);
+      is_stopped_ = !options_.progress((done_ + share) / steps_, input_.name + ": " + what + " " + row.pipeline);
     }
     return !is_stopped_;
   }
 
-  void build(Row& row) const {
-    measure_.build(row);
+  void build(Row& row) {
+    measure_.build(row, [&](double share, std::string_view) { return tell(row, "build", share); });
     if (row.is_finished() && options_.with_overlap) measure_overlap(row);
   }
 

@@ -323,6 +323,21 @@ def test_an_interrupt_writes_what_is_there_and_ends_with_130(folder):
     assert any(value != float("inf") for value in pixels), "what was reached is there"
 
 
+def test_an_interrupt_ends_a_build_with_130(folder):
+    assert kerf("make", "plant", "--triangles", "300000", "-o", "plant.ply").returncode == 0
+    for command in [["render", "plant.ply", "-o", "out.png"], ["inspect", "plant.ply"],
+                    ["study", "plant.ply", "--rows", "bsp_sah", "--size", "8x8"]]:
+        structure = [] if command[0] == "study" else ["--structure", "bsp_sah"]  # takes minutes
+        process = subprocess.Popen([KERF, *command, *structure], stderr=subprocess.PIPE, stdout=subprocess.DEVNULL)
+        wait_for_handler(process)
+        time.sleep(1)
+        start = time.time()
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=60) == 130, command
+        assert time.time() - start < 2, command
+    assert not (folder / "out.png").exists()
+
+
 def test_the_picture_is_the_same_for_any_threads_and_structure_and_another_for_another_seed(folder):
     def picture(*more):
         result = kerf("render", "square.ply", "-o", "out.pfm", *QUICK, *CAMERA, *more)

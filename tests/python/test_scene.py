@@ -2,6 +2,7 @@
 
 import gc
 import re
+import signal
 import threading
 import time
 from pathlib import Path
@@ -298,6 +299,49 @@ def test_other_threads_run_while_one_builds_and_traces():
         done.set()
         other.join()
     assert while_building < 0.6 * (built - start) and while_tracing < 0.6 * (traced - start_tracing)
+
+
+def test_a_build_tells_how_far_it_is():
+    told = []
+    kerf.Scene(*random_mesh(50000), "sweep_sah", progress=lambda share, what: told.append((share, what)))
+    shares = [share for share, _ in told]
+    assert shares == sorted(shares) and 0 <= shares[0] and shares[-1] == 1 and len(shares) > 1
+    assert all(isinstance(what, str) and what for _, what in told)
+
+
+def test_a_build_that_is_not_wanted_ends():
+    with pytest.raises(kerf.Error) as error:
+        kerf.Scene(*random_mesh(200000), "sweep_sah", threads=1, progress=lambda share, what: False)
+    assert error.value.code == "stopped"
+    calls = []
+
+    def fail(share, what):
+        calls.append(share)
+        raise LookupError("no more")
+
+    with pytest.raises(LookupError, match="no more"):
+        kerf.Scene(*random_mesh(200000), "sweep_sah", threads=1, progress=fail)
+    assert len(calls) == 1
+
+
+def test_an_interrupt_ends_a_build():
+    mesh = random_mesh(300000)
+    start = time.perf_counter()
+    timer = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        kerf.Scene(*mesh, "spatial_split(cap=8)", threads=1)  # half a minute
+    assert time.perf_counter() - start < 5
+
+
+def test_memory_is_bounded():
+    mesh = random_mesh(10000)
+    report = kerf.Scene(*mesh).report
+    assert report["bytes"] < report["peak_bytes"] < 3 * report["bytes"]
+    with pytest.raises(kerf.Error, match="it needs [0-9]+ bytes, and 1000 are allowed") as error:
+        kerf.Scene(*mesh, max_bytes=1000)
+    assert error.value.code == "stopped"
+    assert kerf.Scene(*mesh, max_bytes=100_000_000).report["peak_bytes"] == report["peak_bytes"]
 
 
 def test_report_bounds_menu_version():

@@ -64,11 +64,12 @@ inline constexpr LayoutEntry kLateSplitLayout = {
     "Ernst, Greiner: Early Split Clipping for Bounding Volume Hierarchies, 2007, section 5.1",
     kLateSplitOptions,
     1,
-    make_late_split_structure};
+    make_late_split_structure,
+    false};
 
 std::unique_ptr<const Structure> build_brute_force(StructureInput input, const OptionValues& options);
 inline constexpr StructureEntry kBruteForceStructure = {
-    "brute_force", "tests every primitive, without a tree", "", {}, false, build_brute_force};
+    "brute_force", "tests every primitive, without a tree", "", {}, false, build_brute_force, 104};
 
 std::unique_ptr<const Structure> build_bsp_structure(StructureInput input, const OptionValues& options);
 inline constexpr StructureEntry kBspStructure = {
@@ -77,7 +78,8 @@ inline constexpr StructureEntry kBspStructure = {
     "Ize, Wald, Parker: Ray Tracing with the BSP Tree, 2008",
     BspOptions::kSpecs,
     false,
-    build_bsp_structure};
+    build_bsp_structure,
+    160};
 std::unique_ptr<const Structure> build_uniform_grid_structure(StructureInput input, const OptionValues& options);
 inline constexpr OptionSpec kUniformGridOptions[] = {
     {"density", "cells for each primitive, about", 4, 0, 1000, false, true},
@@ -92,7 +94,8 @@ inline constexpr StructureEntry kUniformGridStructure = {
     "Amanatides, Woo: A Fast Voxel Traversal Algorithm for Ray Tracing, 1987",
     kUniformGridOptions,
     false,
-    build_uniform_grid_structure};
+    build_uniform_grid_structure,
+    56};
 
 inline constexpr std::string_view kRootCells[] = {"box", "cube"};
 inline constexpr std::string_view kUndividedAxes[] = {"x", "y", "z", "shortest"};
@@ -112,7 +115,8 @@ inline constexpr StructureEntry kOctreeStructure = {
     "Glassner: Space Subdivision for Fast Ray Tracing, 1984",
     std::span(kQuadtreeOptions).first<std::size(kQuadtreeOptions) - 1>(),
     false,
-    build_octree_structure};
+    build_octree_structure,
+    128};
 
 std::unique_ptr<const Structure> build_quadtree_structure(StructureInput input, const OptionValues& options);
 inline constexpr StructureEntry kQuadtreeStructure = {
@@ -121,7 +125,8 @@ inline constexpr StructureEntry kQuadtreeStructure = {
     "Finkel, Bentley: Quad Trees, a Data Structure for Retrieval on Composite Keys, 1974",
     kQuadtreeOptions,
     false,
-    build_quadtree_structure};
+    build_quadtree_structure,
+    128};
 
 std::unique_ptr<const Structure> build_bih_structure(StructureInput input, const OptionValues& options);
 inline constexpr auto kBihOptions = [] {
@@ -138,7 +143,8 @@ inline constexpr StructureEntry kBihStructure = {
     "Waechter, Keller: Instant Ray Tracing: The Bounding Interval Hierarchy, 2006",
     kBihOptions,
     true,
-    build_bih_structure};
+    build_bih_structure,
+    136};
 std::unique_ptr<const Structure> build_kd_sah(StructureInput input, const OptionValues& options);
 inline constexpr std::string_view kKdBuilds[] = {"exact", "sampled"};
 inline constexpr OptionSpec kKdOptions[] = {
@@ -160,6 +166,7 @@ inline constexpr StructureEntry kKdSahStructure = {
     "Havran and Bittner 2002; Wald and Havran 2006; Hunt, Mark, Stoll 2006",
     kKdOptions,
     false,
-    build_kd_sah};
+    build_kd_sah,
+    160};
 
 }  // namespace kerf

@@ -46,6 +46,7 @@ class BihStructure : public Structure {
 }  // namespace
 
 std::unique_ptr<const Structure> build_bih_structure(StructureInput input, const OptionValues& options) {
+  input.held.release();
   Bih bih =
       build_bih(std::exchange(input.references, {}), TopDownOptions::from(options), options["cut_off"], input.limit);
   if (input.is_split) mark_repeated(bih.slots, input.geometries);

@@ -15,6 +15,7 @@ class BruteForceStructure : public Structure {
       bounds_.extend(reference.bounds());
     }
     tracer_ = BruteForce(input.geometries, slots_);
+    const HeldBytes held(slots_.size() * sizeof(LeafSlot) + tracer_.bytes());
   }
 
   const TraceTable& table() const override { return brute_force_table(); }

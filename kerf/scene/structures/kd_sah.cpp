@@ -48,6 +48,7 @@ std::unique_ptr<const Structure> build_kd_sah(StructureInput input, const Option
   kd.tries = options.is_on("trial");
   kd.cap = options["cap"];
   kd.samples = static_cast<uint32_t>(options["samples"]);
+  input.held.release();
   KdTree tree = build_kd_tree(std::move(input.references), geometry_clipper(input.geometries), kd, input.limit);
   mark_repeated(tree, input.geometries);
   const bool boxes_only = !kd.clips;
