@@ -301,8 +301,11 @@ TEST(KdBuild, CoincidentTrianglesMakeOneLeaf) {
 
 TEST(KdBuild, TooLittleMemoryStopsIt) {
   const Input input(5000);
+  WorkMeter meter;
   WorkLimit limit;
   limit.bytes = 100'000;
+  limit.meter = &meter;
+  const LimitScope scope(&limit);
   error_of(ErrorCode::stopped, [&] { build_kd_tree(input.references, input.clipper, {}, limit); });
   // Enough to begin with, too little for the tree.
   KdOptions sampled;

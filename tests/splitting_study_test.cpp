@@ -47,7 +47,7 @@ TEST(SplittingStudy, CountsAreThoseOfTheScene) {
   const SplittingScene result = study_splitting(scene, "straight", options);
   EXPECT_EQ(result.title(), "random");
   EXPECT_EQ(result.triangles, 1500U);
-  ASSERT_EQ(result.rows.size(), splitting_rows().size() + splitting_budgets().size());
+  ASSERT_EQ(result.rows.size(), splitting_study_rows().size() + splitting_budgets().size());
   const std::vector<StudyRays> rays =
       make_study_rays(scene.description, scene.camera, options.width, options.height, options.kinds);
   for (const SplittingRow& row : result.rows) {

@@ -286,7 +286,7 @@ Finding judge_trees(const SplittingScene& scene) {
     if (trees.hashes.size() < 3) return not_measured(name + ": not all were built");
     same += (same.empty() ? "" : ", ") + name;
   }
-  for (const SplittingRowEntry& entry : splitting_rows()) {
+  for (const SplittingRowEntry& entry : splitting_study_rows()) {
     const bool is_there = std::any_of(scene.trees.begin(), scene.trees.end(),
                                       [&](const SplittingTrees& trees) { return trees.role == entry.role; });
     if (entry.is_repeatable && !is_there) return not_measured(fmt::format("the same: {}; no {}", same, entry.name));

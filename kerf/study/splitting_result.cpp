@@ -31,7 +31,7 @@ constexpr double kBudgets[] = {1.02, 1.05, 1.1, 1.15, 1.2, 1.3, 1.4, 1.5, 1.6, 1
 
 }  // namespace
 
-std::span<const SplittingRowEntry> splitting_rows() { return kRows; }
+std::span<const SplittingRowEntry> splitting_study_rows() { return kRows; }
 
 const SplittingRowEntry& splitting_row(SplittingRole role) {
   const auto* const found =

@@ -23,7 +23,7 @@ struct SplittingRowEntry {
 };
 
 /// All rows but those of the sweep, plain first.
-std::span<const SplittingRowEntry> splitting_rows();
+std::span<const SplittingRowEntry> splitting_study_rows();
 const SplittingRowEntry& splitting_row(SplittingRole role);
 
 /// References per primitive of the sweep's rows, ascending, and the pipeline of each.
@@ -84,7 +84,7 @@ struct SplittingScene {
   size_t triangles = 0;
   std::vector<std::string> kinds;  ///< of rays
   std::vector<size_t> ray_counts;  ///< of each kind
-  std::vector<SplittingRow> rows;  ///< those of splitting_rows(), then the sweep
+  std::vector<SplittingRow> rows;  ///< those of splitting_study_rows(), then the sweep
   std::vector<SplittingVariant> variants;
   std::optional<double> capped_references;  ///< R of early_split(auto,cap=kSplittingCap)
   std::vector<SplittingTrees> trees;

@@ -44,7 +44,7 @@ class SplittingStudy {
     result_.name = scene.name;
     result_.turn = turn;
     result_.triangles = primitive_count(scene.description);
-    for (const SplittingRowEntry& entry : splitting_rows()) add_row(entry.role, std::string(entry.pipeline), 0);
+    for (const SplittingRowEntry& entry : splitting_study_rows()) add_row(entry.role, std::string(entry.pipeline), 0);
     for (const double budget : splitting_budgets()) add_row(SplittingRole::budget, budget_pipeline(budget), budget);
     steps_ = static_cast<double>(2 * measured_.size() + static_cast<size_t>(options.repeat) * timed().size() +
                                  std::size(kVariants) + 2 + (options.with_threads ? 3 * std::size(kThreads) : 0));
@@ -76,8 +76,8 @@ class SplittingStudy {
   /// Numbers of the timed rows.
   std::vector<size_t> timed() const {
     std::vector<size_t> numbers;
-    for (size_t i = 0; i < splitting_rows().size(); ++i) {
-      if (splitting_rows()[i].is_timed) numbers.push_back(i);
+    for (size_t i = 0; i < splitting_study_rows().size(); ++i) {
+      if (splitting_study_rows()[i].is_timed) numbers.push_back(i);
     }
     return numbers;
   }
@@ -115,7 +115,7 @@ class SplittingStudy {
       done_ += 1;
       if (is_interrupted()) return;
       keep_counts(row, result_.rows[i]);
-      const bool is_timed = i < splitting_rows().size() && splitting_rows()[i].is_timed;
+      const bool is_timed = i < splitting_study_rows().size() && splitting_study_rows()[i].is_timed;
       if (!is_timed) row.scene.reset();
     }
   }
@@ -257,7 +257,7 @@ class SplittingStudy {
       result_.skipped.emplace_back("trees for 1, 2 and 7 threads: left out as asked");
       return;
     }
-    for (const SplittingRowEntry& entry : splitting_rows()) {
+    for (const SplittingRowEntry& entry : splitting_study_rows()) {
       if (!entry.is_repeatable || result_.row(entry.role) == nullptr) continue;
       SplittingTrees trees{entry.role, {}, {}};
       for (const int threads : kThreads) {

@@ -26,6 +26,7 @@ inline constexpr LayoutEntry kBvh2Layout = {
     kBvh2Options,
     0,
     make_bvh2_structure,
+    true,
     true};
 
 std::unique_ptr<Structure> make_skip_pointer_structure(Bvh bvh, const StructureInput& input,
@@ -37,6 +38,7 @@ inline constexpr LayoutEntry kSkipPointerLayout = {
     {},
     0,
     make_skip_pointer_structure,
+    true,
     true};
 
 std::unique_ptr<Structure> make_packets_structure(Bvh bvh, const StructureInput& input, const OptionValues& options);
@@ -49,6 +51,7 @@ inline constexpr LayoutEntry kPacketsLayout = {
     kPacketOptions,
     0,
     make_packets_structure,
+    true,
     true};
 std::unique_ptr<Structure> make_late_split_structure(Bvh bvh, const StructureInput& input, const OptionValues& options);
 inline constexpr OptionSpec kLateSplitOptions[] = {
