@@ -23,7 +23,7 @@ constexpr double kLeastOverlap = 0.01;
 /// alone.
 constexpr double kLeastSaving = 0.3;
 constexpr double kFlat = 0.95;        // share of half the area that the largest side of a flat box has
-constexpr double kMostSaving = 0.75;  // hardly any cut saves more, so what has less than it should save is not tried
+constexpr double kMostSaving = 0.55;  // hardly any cut saves more than half: what has too little for that is not tried
 
 bool is_flat(const Box3f& box) {
   const Vec3d e = to_double(box.upper) - to_double(box.lower);
