@@ -105,15 +105,21 @@ GuidePlane cheapest_dividing_plane(const Judges& judges, const JudgedBox& box) {
 }
 
 GuidePlane cheapest_cutting_plane(const Judges& judges, const JudgedBox& box, const Clipper& clipper, double cost) {
-  SpatialSlices slices(box.bounds, kBins);
   const Vec3f extent = box.bounds.extent();
-  for (uint32_t axis = 0; axis < 3; ++axis) {
-    if (extent[axis] < kLeastLength * largest(extent)) slices.leave_out(axis);
-  }
-  constexpr double kAny = std::numeric_limits<double>::infinity();
   // A plane that leaves everything on both sides divides nothing.
-  const SpatialLimits limits{2 * box.weight - 1, kAny, cost};
-  const SpatialPlane plane = cheapest_spatial_plane(judges.references, judges.weights, slices, clipper, limits);
+  const SpatialLimits limits{2 * box.weight - 1, std::numeric_limits<double>::infinity(), cost};
+  SpatialPlane plane;
+  // Each axis for itself: together, what was found along one would bound how closely the next is looked at, and the
+  // outcome would depend on the order of axes.
+  for (uint32_t axis = 0; axis < 3; ++axis) {
+    if (extent[axis] < kLeastLength * largest(extent)) continue;
+    SpatialSlices slices(box.bounds, kBins);
+    for (uint32_t other = 0; other < 3; ++other) {
+      if (other != axis) slices.leave_out(other);
+    }
+    const SpatialPlane along = cheapest_spatial_plane(judges.references, judges.weights, slices, clipper, limits);
+    if (along.cost < plane.cost && along.is_found()) plane = along;
+  }
   if (!plane.is_found()) return {};
   GuidePlane found;
   found.cost = plane.cost;
