@@ -397,5 +397,28 @@ TEST(EarlySplit, IsStoppedWithinOnePrimitive) {
   EXPECT_LT(cutter.cuts, 2000);
 }
 
+TEST(EarlySplit, MayBeginWithinAnother) {
+  // As where a callback builds something else: here the clipper splits another primitive before each cut.
+  const std::vector<Reference> one{{{0, 0, 0}, 0, {1, 1, 1}, 0}}, other{{{0, 0, 0}, 0, {1, 1, 1}, 1}};
+  struct Cutter {
+    const std::vector<Reference>& other;
+    bool is_nested = false;
+    int pieces = 0;
+  } cutter{other};
+  const Clipper clipper{[](const void* data, const Reference& reference, uint32_t axis, float position) {
+                          auto& c = *static_cast<Cutter*>(const_cast<void*>(data));
+                          if (c.is_nested && reference.primitive == 0) early_split(c.other, {}, {kInfinity});
+                          ClippedBoxes boxes{reference.bounds(), reference.bounds()};
+                          boxes.below.upper[axis] = boxes.above.lower[axis] = position;
+                          return boxes;
+                        },
+                        &cutter};
+  const auto pieces = [&] { return early_split(one, clipper, {0.1, 1000}).references.size(); };
+  const size_t alone = pieces();
+  EXPECT_GT(alone, 10U);
+  cutter.is_nested = true;
+  EXPECT_EQ(pieces(), alone);
+}
+
 }  // namespace
 }  // namespace kerf::test

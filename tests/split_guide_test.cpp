@@ -39,6 +39,33 @@ TEST(SplitGuide, LeavesWallsInFlatBoxesAlone) {
   EXPECT_GT(pieces[2], 2U);
 }
 
+TEST(SplitGuide, MayCutWithinAnotherCut) {
+  // As where a callback builds something else, while pieces are handed out.
+  Soup soup;
+  soup.add({0, 0, 0}, {8, 0, 1}, {0, 8, 8});
+  const Geometry geometry{soup.mesh()};
+  const std::span<const Geometry> geometries(&geometry, 1);
+  const Clipper clipper = geometry_clipper(geometries);
+  const Reference reference = make_references(geometries).references[0];
+  Judges judges;
+  judges.add(reference, 1);
+  GuideRules rules;
+  rules.scene_unit = 1;
+  const SplitGuide guide(judges, geometries, rules, {});
+  const auto pieces = [&](auto&& in_between) {
+    GainCurve curve;
+    size_t count = 0;
+    guide.split(reference, clipper, curve, [&](const Reference&) {
+      in_between();
+      return ++count > 0;
+    });
+    return count;
+  };
+  const size_t alone = pieces([] {});
+  EXPECT_GT(alone, 2U);
+  EXPECT_EQ(pieces([&] { pieces([] {}); }), alone);
+}
+
 TEST(RoughClipper, BoundsTheTwoPartsOfATriangleWithinItsBox) {
   Soup soup;
   soup.add({0, 0, 0}, {4, 4, 0}, {4, 0, 4});

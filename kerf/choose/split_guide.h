@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "kerf/base/thread_vector.h"
 #include "kerf/base/work_limit.h"
 #include "kerf/choose/guide_planes.h"
 
@@ -53,8 +54,9 @@ class SplitGuide {
   /// save is added to `curve`.
   template <class Emit>
   void split(const Reference& whole, const Clipper& clipper, GainCurve& curve, Emit&& emit) const {
-    thread_local std::vector<Waiting> stack;
-    stack.assign(1, {whole, root_.get()});
+    ThreadVector<Waiting> reused;
+    std::vector<Waiting>& stack = *reused;
+    stack.push_back({whole, root_.get()});
     while (!stack.empty()) {
       const Waiting next = stack.back();
       stack.pop_back();

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "kerf/base/error.h"
+#include "kerf/base/thread_vector.h"
 #include "kerf/references/fit_limit.h"
 #include "kerf/references/middle_cut.h"
 #include "kerf/references/split_each.h"
@@ -35,8 +36,8 @@ void split_primitive(const Reference& whole, const Clipper& clipper, double sa_m
 std::optional<std::vector<Reference>> split_all(std::span<const Reference> whole, const Clipper& clipper, double sa_max,
                                                 size_t most, const WorkLimit& limit) {
   return split_each(whole, most, limit, [&](const Reference& reference, const auto& emit) {
-    thread_local std::vector<Reference> stack;
-    split_primitive(reference, clipper, sa_max, stack, emit);
+    ThreadVector<Reference> stack;
+    split_primitive(reference, clipper, sa_max, *stack, emit);
   });
 }
 
