@@ -273,6 +273,42 @@ TEST(AutomaticSplit, SurvivesExtremes) {
   EXPECT_TRUE(split(flat).references.empty()) << "no triangle has an area";
 }
 
+TEST(AutomaticSplit, DustDoesNotMakeTheRestBeCut) {
+  // Where a sample finds nothing but dust, as in trees that can be refitted, what else lies there is not cut to dust.
+  for (const float dust : {0.0F, 1e-6F}) {
+    Random random(18);
+    Soup soup;
+    for (int i = 0; i < 300000; ++i) {
+      const Vec3f at = 10.0F * random.vector();
+      const float size = random.below(5) == 0 ? 0.1F : dust;
+      soup.add(at, at + size * random.vector(), at + size * random.vector());
+    }
+    const Geometry geometry{soup.mesh()};
+    const std::span<const Geometry> geometries(&geometry, 1);
+    const PrimitiveReferences whole = make_references(geometries, false, true);
+    const SplitResult result =
+        split_automatically({geometries, whole.references, geometry_clipper(geometries), {}}, {});
+    EXPECT_LE(static_cast<double>(result.references.size()), 1.03 * static_cast<double>(whole.references.size()))
+        << dust << ": " << result.choice->reason;
+  }
+}
+
+TEST(AutomaticSplit, LeavesPointsAlone) {
+  Random random(19);
+  Soup soup;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3f at = random.vector();
+    soup.add(at, at, at);
+  }
+  const Geometry geometry{soup.mesh()};
+  const std::span<const Geometry> geometries(&geometry, 1);
+  const PrimitiveReferences whole = make_references(geometries, false, true);
+  ASSERT_EQ(whole.references.size(), 20000U);
+  const SplitResult result = split_automatically({geometries, whole.references, geometry_clipper(geometries), {}}, {});
+  EXPECT_TRUE(same_bytes(result.references, whole.references));
+  EXPECT_EQ(result.choice->reason.find("nan"), std::string::npos) << result.choice->reason;
+}
+
 TEST(AutomaticSplit, ExplainsItself) {
   const Soup soup = needles_in_hay(1000, 20000, 15);
   const SplitResult result = split(soup);

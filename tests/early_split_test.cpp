@@ -407,7 +407,7 @@ TEST(EarlySplit, MayBeginWithinAnother) {
   } cutter{other};
   const Clipper clipper{[](const void* data, const Reference& reference, uint32_t axis, float position) {
                           auto& c = *static_cast<Cutter*>(const_cast<void*>(data));
-                          if (c.is_nested && reference.primitive == 0) early_split(c.other, {}, {kInfinity});
+                          if (c.is_nested && reference.primitive == 0) early_split(c.other, {}, {1e6});
                           ClippedBoxes boxes{reference.bounds(), reference.bounds()};
                           boxes.below.upper[axis] = boxes.above.lower[axis] = position;
                           return boxes;

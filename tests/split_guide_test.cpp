@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <functional>
 
 #include "kerf/build/spatial_bins.h"
 #include "kerf/choose/rough_clip.h"
@@ -52,7 +53,7 @@ TEST(SplitGuide, MayCutWithinAnotherCut) {
   GuideRules rules;
   rules.scene_unit = 1;
   const SplitGuide guide(judges, geometries, rules, {});
-  const auto pieces = [&](auto&& in_between) {
+  const auto pieces = [&](const std::function<void()>& in_between) {
     GainCurve curve;
     size_t count = 0;
     guide.split(reference, clipper, curve, [&](const Reference&) {
@@ -81,6 +82,11 @@ TEST(RoughClipper, BoundsTheTwoPartsOfATriangleWithinItsBox) {
   EXPECT_EQ(parts.below, (Box3f{{0, 0, 0}, {2, 2, 1}}));
   EXPECT_EQ(parts.above, (Box3f{{2, 0, 0}, {3, 3, 1}}));
   EXPECT_TRUE(clipper(reference, 0, -1).below.is_empty());
+  // A product of such distances is below all floats.
+  constexpr float kTiny = 0x1p-90F;
+  for (Vec3f& v : soup.vertices) v = kTiny * v;
+  parts = clipper(make_references(geometries).references[0], 0, kTiny);
+  EXPECT_EQ(parts.below, (Box3f{{0, 0, 0}, {kTiny, kTiny, kTiny}}));
 }
 
 TEST(SpatialPlane, WeightsCountAsSoManyReferences) {

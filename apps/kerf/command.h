@@ -33,7 +33,8 @@ void check_output(const std::string& path);
 
 /// interrupted() becomes true at the first interrupt (Ctrl-C, SIGTERM); a second one ends the program at once.
 void watch_interrupts();
-/// An interrupt ends the program at once, with kInterrupted: for commands that have nothing to write then.
+/// An interrupt ends the program at once, with 128 and the signal's number, kInterrupted for Ctrl-C: for commands that
+/// have nothing to write then.
 void end_at_interrupts();
 /// From now on interrupts are passed over: files are written to their end.
 void ignore_interrupts();

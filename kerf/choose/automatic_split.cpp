@@ -67,7 +67,7 @@ Areas measure(std::span<const Reference> references) {
     std::nth_element(probes.begin(), place, probes.end(), std::greater<>());
     return *place;
   };
-  areas.candidate = passed_by(kCandidateShare);
+  areas.candidate = std::max(passed_by(kCandidateShare), std::numeric_limits<double>::min());
   areas.large = passed_by(sample_rate(references.size()));
   return areas;
 }
@@ -76,14 +76,18 @@ Areas measure(std::span<const Reference> references) {
 Judges choose_judges(std::span<const Reference> whole, const Areas& areas) {
   const size_t rate = sample_rate(whole.size()), others_rate = std::max<size_t>(1, whole.size() / kOthers);
   Judges judges;
-  for (size_t i = 0; i < whole.size(); ++i) {
-    if (half_area(whole[i].bounds()) > areas.large) {
-      judges.add(whole[i], 1);
-    } else if (i % rate == 0) {
-      judges.add(whole[i], static_cast<float>(rate));
-    } else if (i % others_rate == 0 && half_area(whole[i].bounds()) >= areas.candidate) {
-      judges.others.push_back(whole[i].bounds());
+  size_t seen = 0;
+  for (const Reference& reference : whole) {
+    const double area = half_area(reference.bounds());
+    if (!(area > 0)) continue;  // costs no ray anything
+    if (area > areas.large) {
+      judges.add(reference, 1);
+    } else if (seen % rate == 0) {
+      judges.add(reference, static_cast<float>(rate));
+    } else if (seen % others_rate == 0 && area >= areas.candidate) {
+      judges.others.push_back(reference.bounds());
     }
+    ++seen;
   }
   return judges;
 }
@@ -194,7 +198,7 @@ SplitResult split_automatically(const SplitInput& input, const AutomaticSplit& o
   SplitResult result{{}, std::numeric_limits<double>::quiet_NaN(), false, SplitChoice{}};
   input.limit.check(whole.size() * sizeof(Reference));
   const Areas areas = measure(whole);
-  if (whole.empty() || !(areas.whole > 0)) {
+  if (!(areas.sum > 0)) {
     result.choice->curve = {{1, 0}};
     result.choice->reason = "nothing is cut: there is nothing with a volume or an area";
     result.references.assign(whole.begin(), whole.end());

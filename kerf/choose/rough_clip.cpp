@@ -13,7 +13,7 @@ ClippedBoxes halves(const Triangle& triangle, const Box3f& cell, uint32_t axis, 
     const float from_side = from[axis] - position, to_side = to[axis] - position;
     if (from_side <= 0) parts.below.extend(from);
     if (from_side >= 0) parts.above.extend(from);
-    if (from_side * to_side >= 0) continue;
+    if (!(from_side < 0 && to_side > 0) && !(from_side > 0 && to_side < 0)) continue;
     const Vec3f crossing = from + (to - from) * (from_side / (from_side - to_side));
     parts.below.extend(crossing);
     parts.above.extend(crossing);

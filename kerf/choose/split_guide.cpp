@@ -56,6 +56,7 @@ struct SplitGuide::Node {
   std::unique_ptr<const Node> below, above;
   double least_saving = 0;    ///< half area that a cut in the middle must save; above cells: the least of them
   bool cuts = false;          ///< a plane here or below goes through references
+  double area = 0;            ///< of a cell: half that of the box around all that it was judged by
   double gain_of_saving = 0;  ///< of a cell: what turns half area saved into a gain, for the curve
 };
 
@@ -159,6 +160,7 @@ class SplitGuide::Building {
     double sum = 0, count = box.weight;
     for (size_t i = 0; i < judges.size(); ++i) sum += judges.weights[i] * half_area(judges.references[i].bounds());
     auto cell = std::make_unique<Node>();
+    cell->area = area;
     for (int round = 0; round < kRounds; ++round) {
       const double unit = (std::log2(count + 1) * area + sum) / count;
       cell->least_saving = std::min(unit * rules_.cell_gain, rules_.scene_unit * rules_.scene_gain);
@@ -190,7 +192,8 @@ class SplitGuide::Building {
 };
 
 SplitGuide::SplitGuide(Judges judges, const std::span<const Geometry>& geometries, const GuideRules& rules,
-                       const WorkLimit& limit) {
+                       const WorkLimit& limit)
+    : scene_saving_(rules.scene_unit * rules.scene_gain) {
   const auto room = static_cast<size_t>(rules.most_growth * static_cast<double>(judges.size()));
   root_ = Building(geometries, rules, limit).node(std::move(judges), room, 0);
 }
@@ -218,7 +221,9 @@ std::optional<Reference> SplitGuide::advance(const Waiting& piece, const Clipper
     }
     node = side == GuidePlane::Side::below ? node->below.get() : node->above.get();
   }
-  const auto cut = worthwhile_cut(reference, clipper, node->least_saving);
+  // What is larger than all that the cell was judged by was missed: the cell's own cost would be far too low for it.
+  const bool is_missed = half_area(reference.bounds()) > node->area;
+  const auto cut = worthwhile_cut(reference, clipper, is_missed ? scene_saving_ : node->least_saving);
   if (!cut) return reference;
   curve.add(cut->saved * node->gain_of_saving, cut->saved, cut->has_both() ? 1 : 0);
   wait(cut->parts, node, node);

@@ -79,6 +79,7 @@ class SplitGuide {
   std::optional<Reference> advance(const Waiting& piece, const Clipper& clipper, std::vector<Waiting>& stack,
                                    GainCurve& curve) const;
 
+  double scene_saving_;  ///< half area that a cut must save by what the whole scene costs
   std::unique_ptr<const Node> root_;
 };
 
