@@ -166,6 +166,16 @@ TEST(Memory, NeedGrowsWithTheCap) {
   error_of(ErrorCode::invalid_option, [&] { scene.memory_need({.structure = "kd_shah"}); });
 }
 
+TEST(BuildMemory, WhatRefitsNeedCounts) {
+  const RandomTriangles triangles(20000);
+  const auto peak = [&](bool refittable) {
+    Scene scene;
+    scene.add(triangles.geometry());
+    return scene.build({.structure = "early_split(budget=4)+binned_sah", .refittable = refittable}).peak_bytes;
+  };
+  EXPECT_GT(peak(true), peak(false) + 8 * 20000);
+}
+
 }  // namespace
 }  // namespace kerf::test
 #endif

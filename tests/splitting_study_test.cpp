@@ -58,6 +58,7 @@ TEST(SplittingStudy, CountsAreThoseOfTheScene) {
     const Scene built = build_scene(scene.description, {.structure = row.pipeline});
     EXPECT_EQ(row.references_per_primitive, built.report().references_per_primitive);
     EXPECT_EQ(row.tree_hash, built.report().tree_hash);
+    EXPECT_GT(row.peak_bytes.value_or(0), row.bytes) << row.pipeline;
     for (size_t k = 0; k < rays.size(); ++k) {
       TraceCounts counts;
       for (const Ray& ray : rays[k].rays) {

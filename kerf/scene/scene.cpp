@@ -219,6 +219,7 @@ void Scene::Built::make_structure(StructureInput input, std::span<const Stage> m
   report.seconds.optimise = stages.lap();
   stages.begin(layout.name, kLayoutWeight);
   if (refittable) rest.emplace(bvh, geometries, find_left_out(geometries), kept);
+  const HeldBytes of_rest(rest ? rest->report().bytes : 0);
   std::unique_ptr<Structure> made = layout.make(std::move(bvh), input, layout_options);
   movable = made.get();
   structure = std::move(made);

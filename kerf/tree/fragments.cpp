@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "kerf/base/parallel.h"
+#include "kerf/base/work_limit.h"
 
 namespace kerf {
 
@@ -22,6 +23,7 @@ Fragments::Fragments(const Bvh& bvh, std::span<const Geometry> geometries, size_
       }
     }
   };
+  HeldBytes held(bvh.slots.size() * sizeof(uint64_t));
   places_.resize(bvh.slots.size());
   parallel_for(blocks.size(), 1, [&](size_t block, size_t) {
     for_repeated(block, [&](uint32_t number, const LeafSlot& slot, const Box3f& cell) {
@@ -30,9 +32,11 @@ Fragments::Fragments(const Bvh& bvh, std::span<const Geometry> geometries, size_
       places_[number] = blocks[block].size() * kPerCount + count;
       blocks[block].insert(blocks[block].end(), corners.begin(), corners.begin() + count);
     });
+    held.add(blocks[block].capacity() * sizeof(FragmentCorner));
   });
   std::vector<size_t> first(blocks.size() + 1);
   for (size_t i = 0; i < blocks.size(); ++i) first[i + 1] = first[i] + blocks[i].size();
+  held.add(first.back() * sizeof(FragmentCorner));
   corners_.resize(first.back());
   parallel_for(blocks.size(), 1, [&](size_t block, size_t) {
     std::copy(blocks[block].begin(), blocks[block].end(), corners_.begin() + static_cast<ptrdiff_t>(first[block]));
