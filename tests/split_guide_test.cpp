@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 
 #include "kerf/build/spatial_bins.h"
 #include "kerf/choose/rough_clip.h"
@@ -65,6 +66,14 @@ TEST(SplitGuide, MayCutWithinAnotherCut) {
   const size_t alone = pieces([] {});
   EXPECT_GT(alone, 2U);
   EXPECT_EQ(pieces([&] { pieces([] {}); }), alone);
+}
+
+TEST(GainCurve, TakesAnyGain) {
+  GainCurve curve;
+  curve.add(std::numeric_limits<double>::infinity(), 1, 2);
+  curve.add(0, 1, 3);
+  EXPECT_EQ(curve.buckets.back().references, 2U);
+  EXPECT_EQ(curve.buckets.front().references, 3U);
 }
 
 TEST(RoughClipper, BoundsTheTwoPartsOfATriangleWithinItsBox) {

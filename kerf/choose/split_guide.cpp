@@ -231,9 +231,10 @@ std::optional<Reference> SplitGuide::advance(const Waiting& piece, const Clipper
 }
 
 void GainCurve::add(double gain, double saved, size_t references) {
-  const int bucket = std::clamp(static_cast<int>(std::floor(std::log2(gain))) - kFirst, 0, kBuckets - 1);
-  buckets[static_cast<size_t>(bucket)].references += references;
-  buckets[static_cast<size_t>(bucket)].saved += saved;
+  const double place = std::clamp(std::floor(std::log2(gain)) - kFirst, 0.0, kBuckets - 1.0);  // a gain may be infinite
+  Bucket& bucket = buckets[static_cast<size_t>(place)];
+  bucket.references += references;
+  bucket.saved += saved;
 }
 
 void GainCurve::add(const GainCurve& other) {
