@@ -239,7 +239,8 @@ class MeshScene {
     check_rows(vertices_, "vertices");
     const auto corners = to_strided<Vec3f>(vertices_);
     scene_.add(TriangleMesh{corners, to_strided<TriangleCorners>(faces_)});
-    BuildOptions options{.structure = structure, .threads = threads, .skip_invalid = skip_invalid, .refittable = refittable};
+    BuildOptions options{
+        .structure = structure, .threads = threads, .skip_invalid = skip_invalid, .refittable = refittable};
     if (max_bytes) options.limit.bytes = *max_bytes;
     WatchedBuild(scene_, std::move(options), progress).wait();
   }
@@ -413,9 +414,9 @@ PYBIND11_MODULE(kerf, module) {
   py::class_<MeshScene>(module, "Scene", kSceneDoc)
       .def(py::init<const py::object&, const py::object&, const std::string&, int, bool, bool, const py::object&,
                     std::optional<size_t>>(),
-           py::arg("vertices"), py::arg("faces"), py::arg("structure") = kerf::kDefaultStructure, py::arg("threads") = 0,
-           py::arg("skip_invalid") = false, py::arg("refittable") = false, py::arg("progress") = py::none(),
-           py::arg("max_bytes") = py::none())
+           py::arg("vertices"), py::arg("faces"), py::arg("structure") = kerf::kDefaultStructure,
+           py::arg("threads") = 0, py::arg("skip_invalid") = false, py::arg("refittable") = false,
+           py::arg("progress") = py::none(), py::arg("max_bytes") = py::none())
       .def("refit", &MeshScene::refit, py::arg("vertices"), kRefitDoc)
       .def("closest_hit", &MeshScene::closest_hit, py::arg("origins"), py::arg("directions"), py::arg("t_min") = 0.0F,
            py::arg("t_max") = infinity, kClosestDoc)

@@ -18,7 +18,8 @@ void both(uint32_t depth, F&& f, G&& g) {
 
 }  // namespace
 
-Collapse::Collapse(const MovableTree& tree, const LeafRule& rule) : tree_(tree), rule_(rule), held_(tree.end() * sizeof(Summary)), summaries_(tree.end()) {
+Collapse::Collapse(const MovableTree& tree, const LeafRule& rule)
+    : tree_(tree), rule_(rule), held_(tree.end() * sizeof(Summary)), summaries_(tree.end()) {
   choose(MovableTree::kRoot, 0);
 }
 

@@ -39,8 +39,7 @@ void fill_slices(size_t references, uint32_t slices, PerSlice<T>& values, Fill&&
   };
   if (references < 2 * kGrain) return fill_some(0, references, values);
   std::vector<PerSlice<T>> blocks((references + kGrain - 1) / kGrain);
-  parallel_for(references, kGrain,
-               [&](size_t begin, size_t end) { fill_some(begin, end, blocks[begin / kGrain]); });
+  parallel_for(references, kGrain, [&](size_t begin, size_t end) { fill_some(begin, end, blocks[begin / kGrain]); });
   for (const PerSlice<T>& block : blocks) {
     for (uint32_t i = 0; i < slices; ++i) join(values[i], block[i]);
   }
@@ -158,7 +157,7 @@ class AxisSearch {
   const Clipper& clipper_;
   const SpatialLimits& limits_;
   PerSlice<Tally> tallies_;
-  PerSlice<double> below_count_, above_count_;   // by plane; those across count on both sides
+  PerSlice<double> below_count_, above_count_;  // by plane; those across count on both sides
   uint32_t first_plane_ = 1, last_plane_ = 0;
 };
 

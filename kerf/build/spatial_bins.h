@@ -56,8 +56,8 @@ struct SpatialLimits {
 };
 
 /// The plane between two slices with the least area times count, if references across it are cut there; nothing if none
-/// within the limits has something on both sides. Each reference counts as many times as `weights` says, a whole number;
-/// once if it is empty. Parallel for many references.
+/// within the limits has something on both sides. Each reference counts as many times as `weights` says, a whole
+/// number; once if it is empty. Parallel for many references.
 SpatialPlane cheapest_spatial_plane(std::span<const Reference> references, std::span<const float> weights,
                                     const SpatialSlices& slices, const Clipper& clipper, const SpatialLimits& limits);
 

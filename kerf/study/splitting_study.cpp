@@ -25,9 +25,6 @@ struct Variant {
 constexpr Variant kVariants[] = {
     {"1e-3 times the size", 1e-3, false}, {"1e6 times the size", 1e6, false}, {"axes exchanged", 1, true}};
 
-/// Until builds report their peak.
-std::optional<size_t> peak_bytes_of(const BuildReport& /*report*/) { return std::nullopt; }
-
 bool is_in_menu(const std::string& pipeline) {
   try {
     parse_pipeline(pipeline);
@@ -132,7 +129,7 @@ class SplittingStudy {
     to.references_per_primitive = report.references_per_primitive;
     to.sah_cost = report.sah_cost;
     to.bytes = report.bytes;
-    to.peak_bytes = peak_bytes_of(report);
+    to.peak_bytes = report.peak_bytes;
     to.tree_hash = report.tree_hash;
     to.builds = from.builds;
     to.choice = report.choice;
