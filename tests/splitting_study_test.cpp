@@ -58,7 +58,9 @@ TEST(SplittingStudy, CountsAreThoseOfTheScene) {
     const Scene built = build_scene(scene.description, {.structure = row.pipeline});
     EXPECT_EQ(row.references_per_primitive, built.report().references_per_primitive);
     EXPECT_EQ(row.tree_hash, built.report().tree_hash);
-    EXPECT_GT(row.peak_bytes.value_or(0), row.bytes) << row.pipeline;
+    ASSERT_TRUE(row.peak_bytes) << row.pipeline;
+    EXPECT_GE(*row.peak_bytes, row.bytes) << row.pipeline;
+    EXPECT_LE(*row.peak_bytes, built.memory_need({.structure = row.pipeline}).most) << row.pipeline;
     for (size_t k = 0; k < rays.size(); ++k) {
       TraceCounts counts;
       for (const Ray& ray : rays[k].rays) {
@@ -87,7 +89,8 @@ TEST(SplittingStudy, ChecksAreMade) {
   EXPECT_TRUE(result.refusal->is_refused);
   EXPECT_TRUE(result.skipped.empty());
   for (const GoalVerdict& verdict : scene_verdicts(result)) {
-    if (verdict.goal->id == "follows" || verdict.goal->id == "cap" || verdict.goal->id == "hits") {
+    if (verdict.goal->id == "follows" || verdict.goal->id == "cap" || verdict.goal->id == "hits" ||
+        verdict.goal->id == "peak") {
       EXPECT_EQ(verdict.state, GoalState::reached) << verdict.goal->id << ": " << verdict.text;
     }
   }

@@ -90,7 +90,7 @@ std::optional<std::vector<Reference>> split_each(std::span<const Reference> whol
       }
     }
     tell(false);
-    blocks[b] = std::move(block);
+    blocks[b] = block;  // a copy is as long as it has to be
     limit.advance(static_cast<double>(some.size()));
   });
   if (total > most) return std::nullopt;

@@ -315,7 +315,7 @@ Finding judge_cap(const SplittingScene& scene) {
 
 Finding judge_peak(const SplittingScene& scene) {
   return with_rows(scene, {Role::balanced}, [&](const auto& rows) {
-    if (!rows[0]->peak_bytes || rows[0]->bytes == 0) return not_measured("the build does not say");
+    if (!rows[0]->peak_bytes || rows[0]->bytes == 0) return not_measured("there is nothing to compare");
     const double ratio = static_cast<double>(*rows[0]->peak_bytes) / static_cast<double>(rows[0]->bytes);
     return at_most(ratio, kMostPeak, fmt::format("{:.2f} times the finished tree", ratio));
   });

@@ -40,7 +40,7 @@ struct SplittingRow {
 
   double references_per_primitive = 0, sah_cost = 0;
   size_t bytes = 0;                  ///< of the finished structure
-  std::optional<size_t> peak_bytes;  ///< while it was built; none: the build does not say
+  std::optional<size_t> peak_bytes;  ///< the most that building held, as the build counts; none: not built
   uint64_t tree_hash = 0;
   std::vector<BuildReport::Seconds> builds;  ///< timed rows take turns, so builds of two rows with one number pair
   std::optional<SplitChoice> choice;
