@@ -117,16 +117,23 @@ SplitChoice explain(std::span<const Reference> whole, std::span<const Reference>
   return choice;
 }
 
+/// Whether all cuts together lower the predicted cost by what each of them should. They do not where triangles are
+/// small and well shaped, and the guide's planes cut some all the same.
+bool saves_enough(const SplitChoice& choice) {
+  const SplitChoice::Step &from = choice.curve.front(), &to = choice.curve.back();
+  return from.cost - to.cost >= GuideRules{}.scene_gain * (to.references_per_primitive - 1) * from.cost;
+}
+
 std::string number(double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
+  std::snprintf(text, sizeof text, "%.4g", value);
   return text;
 }
 
 std::string reason_of(const SplitChoice& choice, bool capped, double cap, const GuideRules& rules) {
   const SplitChoice::Step &from = choice.curve.front(), &to = choice.curve.back();
   const std::string limit = "the cap of " + number(cap) + " lets no more be cut";
-  if (to.references_per_primitive <= 1) return "nothing is cut: " + (capped ? limit : "no cut would save enough");
+  if (to.references_per_primitive <= 1) return "nothing is cut: " + (capped ? limit : "the cuts would not save enough");
   const std::string what = number(to.references_per_primitive) +
                            " references per primitive lower the predicted cost from " + number(from.cost) + " to " +
                            number(to.cost);
@@ -209,11 +216,15 @@ SplitResult split_automatically(const SplitInput& input, const AutomaticSplit& o
   result.capped = !pieces;
   if (!pieces) pieces = attempts.fitting();
   if (pieces) {
+    result.choice = explain(whole, pieces->references, areas, pieces->curve);
+    if (!saves_enough(*result.choice)) pieces.reset();
+  }
+  if (pieces) {
     result.references = std::move(pieces->references);
   } else {
     result.references.assign(whole.begin(), whole.end());
+    result.choice->curve = {{1, Areas::cost(static_cast<double>(whole.size()), areas.sum)}};
   }
-  result.choice = explain(whole, result.references, areas, pieces ? pieces->curve : GainCurve{});
   result.choice->reason = reason_of(*result.choice, result.capped, options.cap, attempts.rules());
   return result;
 }

@@ -161,6 +161,8 @@ FAULTS = [
           "automatic_split_test"),
     Fault("the cap of automatic splitting passed", "kerf/choose/automatic_split.cpp",
           "split_each(input_.whole, most_, ", "split_each(input_.whole, 2 * most_, ", "automatic_split_test"),
+    Fault("cuts kept that save too little together", "kerf/choose/automatic_split.cpp",
+          "if (!saves_enough(*result.choice)) pieces.reset();", "", "automatic_split_test"),
     Fault("walls of flat boxes cut in the middle", "kerf/choose/split_guide.cpp",
           "saved < kLeastSaving * before && is_flat", "saved < 0 * before && is_flat", "split_guide_test"),
     Fault("weights of judges not counted", "kerf/build/spatial_bins.cpp",
