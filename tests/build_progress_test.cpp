@@ -175,7 +175,9 @@ TEST(WorkMeter, StagesAndPartsDivideWhatIsLeft) {
     limit.plan(10);
     meter.advance(5);
     meter.tell(true);  // half of half of a half
-    meter.plan(1);
+    meter.plan(2);
+    meter.advance(1);
+    meter.tell(true);
     meter.advance(1);
     meter.tell(true);
     meter.advance(7);  // more than was planned
@@ -188,7 +190,22 @@ TEST(WorkMeter, StagesAndPartsDivideWhatIsLeft) {
   meter.tell(true);
   meter.begin_stage("third", 0.7);  // less than the share that is done
   meter.tell(true);
-  EXPECT_EQ(told, (std::vector<double>{0.125, 0.25, 0.25, 0.375, 0.5, 1}));
+  EXPECT_EQ(told, (std::vector<double>{0.125, 0.1875, 0.25, 0.25, 0.375, 0.5, 1}));
+}
+
+TEST(WorkMeter, NeverTellsLessThanBefore) {
+  std::vector<double> told;
+  WorkMeter meter([&](double share, std::string_view) {
+    told.push_back(share);
+    return true;
+  });
+  meter.begin_stage("only", 1);
+  meter.plan(4);
+  meter.advance(3);
+  meter.tell(true);
+  meter.advance(-2);  // what was thought to be done is not
+  meter.tell(true);
+  EXPECT_EQ(told, (std::vector<double>{0.75, 0.75}));
 }
 
 TEST(WorkMeter, CountsWhatIsHeld) {
