@@ -25,7 +25,7 @@ constexpr size_t kOthers = 8192;       // about twice as many, at most, show how
 constexpr size_t kCandidateShare = 2;  // of so many the largest may be cut
 constexpr size_t kThresholdProbes = 65536;
 constexpr size_t kGrain = 16384;
-// Where the pieces pass the cap, twice the gain is asked for until they fit, then less again in a few steps.
+// Where the pieces pass the cap, more gain is asked for in growing steps until they fit, then less again in a few.
 constexpr double kPlaneGain = 2, kStrictest = 0x1p30;
 constexpr int kSteps = 5;
 
@@ -173,12 +173,15 @@ class Attempts {
   /// The most pieces found that fit, when at(1) are too many; nothing if none do.
   std::optional<GuidedPieces> fitting() {
     if (most_ <= input_.whole.size()) return std::nullopt;
-    double too_many = 1, fits = 1;  // of strictness
+    double too_many = 1, fits = 1, factor = 2;  // of strictness
     std::optional<GuidedPieces> pieces;
-    while (!pieces && fits < kStrictest) pieces = at(fits *= 2);
+    for (; !pieces && fits < kStrictest; factor *= 2) {
+      too_many = std::exchange(fits, fits * factor);
+      pieces = at(fits);
+    }
     if (!pieces) return std::nullopt;
     for (int step = 0; step < kSteps; ++step) {
-      const double between = std::sqrt(std::max(too_many, fits / 2) * fits);
+      const double between = std::sqrt(too_many * fits);
       pieces.reset();  // two attempts at once would take twice the memory
       pieces = at(between);
       (pieces ? fits : too_many) = between;

@@ -310,7 +310,10 @@ const RefitReport& Scene::refit(std::span<const Geometry> moved, int threads) {
 const RefitReport& Scene::refit(int threads) { return refit(geometries(), threads); }
 
 MemoryNeed Scene::memory_need(const BuildOptions& options) const {
-  return kerf::memory_need(parse_pipeline(options.structure), added_ ? count_primitives(added_->geometries) : 0);
+  const size_t primitives = added_ ? count_primitives(added_->geometries) : 0;
+  MemoryNeed need = kerf::memory_need(parse_pipeline(options.structure), primitives);
+  if (options.refittable) need.most = MemoryNeed::kUnbounded;  // what refits keep depends on how primitives lie
+  return need;
 }
 
 const BuildReport& Scene::report() const {
