@@ -112,7 +112,7 @@ TEST(Progress, OfAnEmptySceneAndOfOneThatWasMovedFrom) {
   scene.build(options);
   EXPECT_EQ(listener.shares, (std::vector<double>{0, 1}));
   const Scene other = std::move(scene);
-  EXPECT_NO_THROW(scene.build());
+  EXPECT_NO_THROW(scene.build());  // NOLINT(bugprone-use-after-move): it starts anew
 }
 
 TEST(Progress, MayUseOtherScenes) {
