@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "kerf/base/box3.h"
@@ -13,6 +15,7 @@
 #include "kerf/base/parallel.h"
 #include "kerf/base/rounding.h"
 #include "kerf/base/transform.h"
+#include "kerf/base/work_limit.h"
 
 namespace kerf {
 namespace {
@@ -66,6 +69,21 @@ TEST(Parallel, EveryBlockOnceForAnyThreadCount) {
       for (const auto& count : seen) EXPECT_EQ(count, 1);
     });
   }
+}
+
+TEST(Parallel, ThreadsThatHelpWorkUnderTheSameLimit) {
+  const WorkLimit limit;
+  const LimitScope scope(&limit);
+  std::atomic<int> others = 0;
+  const auto look = [&] {
+    std::this_thread::sleep_for(std::chrono::microseconds(200));  // so that others get some
+    others += current_limit() == &limit ? 0 : 1;
+  };
+  with_threads(4, [&] {
+    parallel_for(100, 1, [&](size_t, size_t) { look(); });
+    for (int i = 0; i < 50; ++i) parallel_invoke(look, look);
+  });
+  EXPECT_EQ(others, 0);
 }
 
 TEST(Parallel, InvokeNestsAndRethrows) {

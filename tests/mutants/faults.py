@@ -54,7 +54,7 @@ FAULTS = [
           "if (!is_wanted) is_unwanted_ = true;", "", "build_progress_test"),
     Fault("helping threads without the limit", "kerf/base/parallel_tbb.cpp",
           "const LimitScope scope(limit);\n    if (blocks > 1)", "static_cast<void>(limit);\n    if (blocks > 1)",
-          "build_progress_test"),
+          "base_test"),
     Fault("references kept until the tree is joined", "kerf/build/top_down.h",
           "  partition.free_references();\n", "", "build_memory_test"),
     Fault("a limit too small found out late", "kerf/scene/scene.cpp",
