@@ -3,6 +3,7 @@
 // from random points of the moved surface in random directions.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -140,8 +141,8 @@ void measure(const std::string& name, const Mesh& rest, const std::string& struc
   for (const Move& move : moves()) {
     const Mesh mesh = moved(rest, move);
     const kerf::Geometry geometry{kerf::TriangleMesh{mesh.vertices, mesh.triangles}};
-    std::vector<double> refits;
-    for (int i = 0; i < 7; ++i) refits.push_back(scene.refit(std::span(&geometry, 1)).seconds);
+    std::array<double, 7> refits{};
+    for (double& seconds : refits) seconds = scene.refit(std::span(&geometry, 1)).seconds;
     std::nth_element(refits.begin(), refits.begin() + 3, refits.end());
     kerf::Scene fresh;
     fresh.add(kerf::TriangleMesh{mesh.vertices, mesh.triangles});

@@ -61,6 +61,7 @@ TEST(FewReferences, AreDividedWhereThatCostsLeast) {
     ASSERT_EQ(left, division.left_bounds());
     ASSERT_EQ(right, division.right_bounds());
     std::vector<uint32_t> primitives;
+    primitives.reserve(arranged.size());
     for (const Reference& r : arranged) primitives.push_back(r.primitive);
     std::sort(primitives.begin(), primitives.end());
     for (uint32_t i = 0; i < primitives.size(); ++i) ASSERT_EQ(primitives[i], i) << "none is lost";

@@ -118,7 +118,7 @@ size_t check_hits(const Scene& scene, const std::vector<Ray>& rays, const std::v
   size_t hits = 0;
   for (size_t i = 0; i < rays.size(); ++i) {
     const Hit hit = scene.closest_hit(rays[i]);
-    EXPECT_EQ(std::memcmp(&hit, &expected[i], sizeof(Hit)), 0) << "ray " << i;
+    EXPECT_TRUE(hit == expected[i]) << "ray " << i;
     EXPECT_EQ(scene.any_hit(rays[i]), static_cast<bool>(expected[i])) << "ray " << i;
     hits += hit ? 1 : 0;
   }
@@ -128,6 +128,7 @@ size_t check_hits(const Scene& scene, const std::vector<Ray>& rays, const std::v
 std::vector<Hit> expected_hits(const MovingThings& things, const std::vector<Ray>& rays) {
   const std::vector<Geometry> geometries = things.geometries();
   std::vector<Hit> hits;
+  hits.reserve(rays.size());
   for (const Ray& ray : rays) hits.push_back(expected_hit(geometries, ray));
   return hits;
 }
@@ -135,6 +136,7 @@ std::vector<Hit> expected_hits(const MovingThings& things, const std::vector<Ray
 /// Moves, refits and compares, for every way to move and every structure.
 void check_moves(const MovingThings& rest, float size, const std::vector<std::string>& structures, size_t least_hits) {
   std::vector<Scene> scenes;
+  scenes.reserve(structures.size());
   for (const std::string& structure : structures) {
     scenes.push_back(scene_of(rest, {.structure = structure, .refittable = true}));
   }
@@ -241,7 +243,7 @@ TEST(Refit, AnyNumberOfThreadsMakesTheSameTree) {
       Scene other = scene_of(things, {.structure = structure, .threads = threads, .refittable = true});
       const RefitReport& report = other.refit(geometries, threads);
       EXPECT_EQ(other.structure().hash(), hash) << structure;
-      EXPECT_EQ(std::memcmp(&report.sah_cost, &one.sah_cost, sizeof(double)), 0) << structure;
+      EXPECT_EQ(report.sah_cost, one.sah_cost) << structure;
       EXPECT_EQ(report.bytes, one.bytes);
     }
   }

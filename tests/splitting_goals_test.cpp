@@ -20,9 +20,9 @@ const GoalVerdict& verdict_of(const std::vector<GoalVerdict>& verdicts, std::str
   for (const GoalVerdict& verdict : verdicts) {
     if (verdict.goal->id == id) return verdict;
   }
-  static const GoalVerdict kNone;
+  static const GoalVerdict none;
   ADD_FAILURE() << "no goal " << id;
-  return kNone;
+  return none;
 }
 
 GoalVerdict judged(const SplittingScene& scene, std::string_view id) { return verdict_of(scene_verdicts(scene), id); }

@@ -16,8 +16,8 @@ inline bool has(const std::string& text, const std::string& part) { return text.
 
 /// The first place where the page is not well-formed XML: a tag that is not closed in order, a bare sign. Empty: none.
 inline std::string fault_of(const std::string& page) {
-  static const std::regex kTag("^</?([a-z][a-z0-9]*)((?: [a-zA-Z-]+=\"[^\"<]*\")*)(/?)>");
-  static const std::regex kEntity("^&(?:amp|lt|gt|quot|#39);");
+  static const std::regex tag_form("^</?([a-z][a-z0-9]*)((?: [a-zA-Z-]+=\"[^\"<]*\")*)(/?)>");
+  static const std::regex entity_form("^&(?:amp|lt|gt|quot|#39);");
   std::vector<std::string> open;
   const std::string begin = "<!DOCTYPE html>\n";
   if (page.rfind(begin, 0) != 0) return "no document type";
@@ -31,7 +31,7 @@ inline std::string fault_of(const std::string& page) {
       std::string tag = page.substr(i, end - i + 1);
       if (const size_t data = tag.find("base64,"); data != std::string::npos)
         tag.erase(data, tag.find('"', data) - data);
-      if (!std::regex_match(tag, match, kTag)) return "no tag: " + near;
+      if (!std::regex_match(tag, match, tag_form)) return "no tag: " + near;
       if (tag[1] == '/') {
         if (open.empty() || open.back() != match[1]) return "closed out of order: " + near;
         open.pop_back();
@@ -40,7 +40,7 @@ inline std::string fault_of(const std::string& page) {
       }
       i = end + 1;
     } else if (page[i] == '&') {
-      if (!std::regex_search(from, page.end(), match, kEntity, std::regex_constants::match_continuous)) {
+      if (!std::regex_search(from, page.end(), match, entity_form, std::regex_constants::match_continuous)) {
         return "bare &: " + near;
       }
       i += static_cast<size_t>(match.length());
