@@ -19,26 +19,13 @@
 #include "tests/support/exact.h"
 #include "tests/support/property.h"
 #include "tests/support/random.h"
+#include "tests/support/soup.h"
 
 namespace kerf::test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-/// Triangles that share no vertices, as a geometry over its own memory.
-struct Soup {
-  std::vector<Vec3f> vertices;
-  std::vector<TriangleCorners> triangles;
-
-  void add(const Triangle& t) {
-    const auto first = static_cast<uint32_t>(vertices.size());
-    vertices.insert(vertices.end(), {t.a, t.b, t.c});
-    triangles.push_back({first, first + 1, first + 2});
-  }
-  TriangleMesh mesh() const { return {{vertices.data(), vertices.size()}, {triangles.data(), triangles.size()}}; }
-  Triangle triangle(uint32_t i) const { return mesh().triangle(i); }
-};
 
 /// Large triangles of all sizes, a few of them slivers.
 Soup random_soup(size_t count, uint64_t seed) {

@@ -16,7 +16,9 @@ struct Soup {
     vertices.insert(vertices.end(), {a, b, c});
     triangles.push_back({first, first + 1, first + 2});
   }
+  void add(const Triangle& t) { add(t.a, t.b, t.c); }
   TriangleMesh mesh() const { return {{vertices.data(), vertices.size()}, {triangles.data(), triangles.size()}}; }
+  Triangle triangle(uint32_t i) const { return mesh().triangle(i); }
 };
 
 }  // namespace kerf::test
