@@ -13,7 +13,6 @@
 #include "kerf/base/parallel.h"
 #include "kerf/choose/split_guide.h"
 #include "kerf/references/box_around.h"
-#include "kerf/references/fit_limit.h"
 #include "kerf/references/split_each.h"
 
 namespace kerf {

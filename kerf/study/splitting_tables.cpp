@@ -69,13 +69,6 @@ std::string goal_lines(const std::vector<GoalVerdict>& verdicts) {
   return text;
 }
 
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return out + "\"";
-}
-
 std::string csv_times(const std::vector<double>& speeds) {
   if (speeds.empty()) return ",,,";
   const auto interval = median_interval(speeds);
@@ -85,9 +78,9 @@ std::string csv_times(const std::vector<double>& speeds) {
 }
 
 std::string csv_line(const SplittingScene& scene, const SplittingRow& row, size_t k) {
-  std::string text = fmt::format("{},{},{},{},{},{},{},{},{}", quoted(scene.name), scene.turn, scene.triangles,
-                                 quoted(row_name(row)), quoted(row.pipeline), scene.kinds[k], scene.ray_counts[k],
-                                 row.finished, row.finished ? "" : quoted(row.why_not));
+  std::string text = fmt::format("{},{},{},{},{},{},{},{},{}", csv_field(scene.name), scene.turn, scene.triangles,
+                                 csv_field(row_name(row)), csv_field(row.pipeline), scene.kinds[k], scene.ray_counts[k],
+                                 row.finished, row.finished ? "" : csv_field(row.why_not));
   if (!row.finished) return text + std::string(15, ',') + "\n";
   const SplittingRow::Rays& rays = row.rays[k];
   text +=

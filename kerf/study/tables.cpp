@@ -73,14 +73,14 @@ std::string row_text(const StudyResult& result, size_t width) {
   return text;
 }
 
-std::string quoted(const std::string& text) {
+}  // namespace
+
+std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string out = "\"";
   for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
   return out + "\"";
 }
-
-}  // namespace
 
 std::string bytes_text(size_t bytes) {
   const auto size = static_cast<double>(bytes);
@@ -108,8 +108,8 @@ std::string csv_table(std::span<const StudyResult> results) {
       "build_seconds_most,nodes_per_ray,triangles_per_ray,boxes_per_ray,trace_seconds,trace_seconds_least,"
       "trace_seconds_most,speedup,bytes,depth,sah_cost,end_point_overlap,hits\n";
   for (const StudyResult& r : results) {
-    text += fmt::format("{},{},{},{},{},{},{}", quoted(r.scene), r.triangles, quoted(r.row), r.rays, r.ray_count,
-                        r.finished, quoted(r.why_not));
+    text += fmt::format("{},{},{},{},{},{},{}", csv_field(r.scene), r.triangles, csv_field(r.row), r.rays, r.ray_count,
+                        r.finished, csv_field(r.why_not));
     if (r.finished) {
       text += fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.references_per_triangle,
                           r.build_seconds.median, r.build_seconds.least, r.build_seconds.most, r.nodes_per_ray,

@@ -14,6 +14,9 @@ std::string text_tables(std::span<const StudyResult> results);
 /// finish are empty.
 std::string csv_table(std::span<const StudyResult> results);
 
+/// A text as a field of comma-separated values: in quotes where it needs them.
+std::string csv_field(const std::string& text);
+
 /// Bytes in a unit that suits them: "512 B", "1.5 kB", "23 MB".
 std::string bytes_text(size_t bytes);
 
