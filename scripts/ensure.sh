@@ -351,6 +351,14 @@ counts() {
     END { print all - failed - skipped, failed + 0, skipped + 0 }'
 }
 
+# failed PRESET...: the names of the tests of the last run of each that did not pass.
+failed() {
+  local preset
+  for preset in "$@"; do
+    sed -n 's/.*<testcase name="\([^"]*\)".* status="fail".*/'"$preset"': \1/p' "$kerf_root/build/$preset/tests.xml" 2>/dev/null
+  done
+}
+
 closing_line() {
   local passed failed skipped
   read -r passed failed skipped < <(counts "$@")

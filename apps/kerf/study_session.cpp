@@ -141,8 +141,10 @@ void StudySession::load_or_save(const StudyScene& scene) {
   if (!a_.load_rays.empty()) {
     rays_ = load_rays(a_.load_rays);
   } else if (!a_.save_rays.empty()) {
+    WorkLimit limit;
+    limit.cancelled = interrupt_flag();
     rays_ = make_study_rays(scene.description, scene.camera, options_.width, options_.height, options_.kinds,
-                            a_.skip_invalid);
+                            a_.skip_invalid, limit);
     save_rays(a_.save_rays, rays_);
   }
   options_.loaded = rays_;

@@ -37,6 +37,12 @@ WorkLimit RowMeasure::limit() const {
   return limit;
 }
 
+WorkLimit RowMeasure::cancellation() const {
+  WorkLimit limit;
+  limit.cancelled = options_.cancelled;
+  return limit;
+}
+
 std::unique_ptr<Scene> RowMeasure::built(const MeasuredRow& row, WorkMeter::Progress progress) const {
   return std::make_unique<Scene>(build_scene(scene_, {.structure = row.pipeline,
                                                       .threads = options_.threads,

@@ -54,6 +54,8 @@ class RowMeasure {
 
   /// From now on.
   WorkLimit limit() const;
+  /// No limit but that work can be cancelled.
+  WorkLimit cancellation() const;
 
   /// `progress` as that of BuildOptions.
   void build(MeasuredRow& row, WorkMeter::Progress progress = nullptr) const;

@@ -61,8 +61,13 @@ class Study {
       rays_ = options_.loaded;
       return;
     }
-    made_ = make_study_rays(input_.description, input_.camera, options_.width, options_.height, options_.kinds,
-                            options_.skip_invalid);
+    try {
+      made_ = make_study_rays(input_.description, input_.camera, options_.width, options_.height, options_.kinds,
+                              options_.skip_invalid, measure_.cancellation());
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::stopped) throw;
+      is_stopped_ = true;
+    }
     rays_ = made_;
   }
 

@@ -30,9 +30,10 @@ struct Place {
 };
 
 /// The scene that rays start in, with lights where they are asked for.
-RenderScene starting_scene(const SceneDescription& scene, const Camera& camera, bool with_light, bool skip_invalid) {
+RenderScene starting_scene(const SceneDescription& scene, const Camera& camera, bool with_light, bool skip_invalid,
+                           const WorkLimit& limit) {
   // Rays pay for the tree; any other one gives the same hits.
-  const BuildOptions build{.structure = "early_split(budget=1.5)+binned_sah", .skip_invalid = skip_invalid};
+  const BuildOptions build{.structure = "early_split(budget=1.5)+binned_sah", .skip_invalid = skip_invalid, .limit = limit};
   SceneDescription copy = scene;
   if (copy.materials.empty()) copy.materials.emplace_back();
   if (with_light && !copy.is_lit) add_light(copy, camera, build);
@@ -85,7 +86,8 @@ Ray shadow_ray(const Place& place, const Lights& lights, Sampler& sampler) {
 std::span<const RayKindEntry> ray_kinds() { return kKinds; }
 
 std::vector<StudyRays> make_study_rays(const SceneDescription& scene, const Camera& camera, uint32_t width,
-                                       uint32_t height, std::span<const RayKind> kinds, bool skip_invalid) {
+                                       uint32_t height, std::span<const RayKind> kinds, bool skip_invalid,
+                                       const WorkLimit& limit) {
   const bool with_light = std::find(kinds.begin(), kinds.end(), RayKind::shadow) != kinds.end();
   const CameraRays pixel(camera, width, height);
   std::vector<Ray> primary;
@@ -93,7 +95,7 @@ std::vector<StudyRays> make_study_rays(const SceneDescription& scene, const Came
   for (uint32_t y = 0; y < height; ++y) {
     for (uint32_t x = 0; x < width; ++x) primary.push_back(pixel.center(x, y));
   }
-  const RenderScene start = starting_scene(scene, camera, with_light, skip_invalid);
+  const RenderScene start = starting_scene(scene, camera, with_light, skip_invalid, limit);
   const Lights lights(start);
   const Vec3d diagonal = to_double(bounds_of(scene).extent());  // without the lights that were added
   const auto reach = static_cast<float>(kOcclusionReach * std::sqrt(dot(diagonal, diagonal)));

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "kerf/base/work_limit.h"
 #include "kerf/geometry/ray.h"
 #include "kerf/io/camera.h"
 #include "kerf/io/scene_description.h"
@@ -32,9 +33,11 @@ struct StudyRays {
 
 /// The rays of a picture: one primary ray through each pixel, and from each of their hits one ray of every other kind
 /// asked for. The same whatever structure and machine: they are drawn from a sequence that depends on the pixel alone.
-/// Throws Error as build_scene() and CameraRays do.
+/// Throws Error as build_scene() and CameraRays do,
+/// and Error(stopped) where the limit says so.
 std::vector<StudyRays> make_study_rays(const SceneDescription& scene, const Camera& camera, uint32_t width,
-                                       uint32_t height, std::span<const RayKind> kinds, bool skip_invalid = false);
+                                       uint32_t height, std::span<const RayKind> kinds, bool skip_invalid = false,
+                                       const WorkLimit& limit = {});
 
 /// Writes rays as a NumPy array (.npy, version 1.0, little-endian) of records: origin (3 f4), t_min f4, direction
 /// (3 f4), t_max f4, mask u4, kind u4 (its number in ray_kinds(), 255 for loaded ones). Throws Error (file).
