@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "kerf/geometry/ray.h"
@@ -19,18 +20,25 @@ struct PreparedRay {
   uint32_t mask = 0;
   bool valid = false;  ///< false: the ray hits nothing, see Ray
 
+  /// Without branches that would be mispredicted: a ray has few nodes to pay for them.
   explicit PreparedRay(const Ray& ray) {
-    const float length = largest(abs(ray.direction));
-    valid = is_coordinate(ray.origin) && length >= 0x1p-100F && length <= 0x1p100F && ray.t_min <= ray.t_max &&
-            std::isfinite(ray.direction.x) && std::isfinite(ray.direction.y) && std::isfinite(ray.direction.z);
+    const Vec3f sides = abs(ray.direction), place = abs(ray.origin);
+    const auto all_at_most = [](Vec3f a, float limit) {  // false for what is not a number
+      return (a.x <= limit) & (a.y <= limit) & (a.z <= limit);
+    };
+    valid = (all_at_most(place, kMaxCoordinate) & all_at_most(sides, 0x1p100F) & (ray.t_min <= ray.t_max)) != 0 &&
+            largest(sides) >= 0x1p-100F;
     if (!valid) return;
     origin = cleaned(ray.origin);
     t_min = ray.t_min;
     t_max = ray.t_max;
     mask = ray.mask;
-    kz = largest_axis(abs(ray.direction));
-    kx = kz == 2 ? 0 : kz + 1;
-    ky = kx == 2 ? 0 : kx + 1;
+    // largest_axis(), and the axes after it in turn.
+    const auto y_is_larger = static_cast<uint32_t>(sides.x < sides.y);
+    const auto z_is_largest = static_cast<uint32_t>(std::max(sides.x, sides.y) < sides.z);
+    kz = (y_is_larger & ~z_is_largest) | z_is_largest << 1;
+    kx = (0b001001U >> (2 * kz)) & 3;
+    ky = (0b010010U >> (2 * kz)) & 3;
     origin_d = to_double(origin);
     direction_d = to_double(cleaned(ray.direction));
     shear_xd = direction_d[kx] / direction_d[kz];

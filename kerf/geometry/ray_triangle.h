@@ -34,12 +34,10 @@ inline bool is_degenerate(const Triangle& t) {
   return cross(to_double(t.b) - a, to_double(t.c) - a) == Vec3d{};
 }
 
-/// Where the ray crosses a triangle, seen from either side; edges and corners belong to it. `limit` is the largest t of
-/// interest. Watertight after Woop, Benthin, Wald 2013, with the decision in double: there a triangle's edge functions
-/// have the right sign or are 0, and 0 is inside, so no ray slips between neighbours; t, u and v are right to about one
-/// rounding to float even for slivers and at grazing angles. A triangle without area is never hit.
-inline bool intersect(const PreparedRay& ray, const Triangle& triangle, float limit, Crossing& crossing) {
-  if (!detail::may_hit_triangle(ray, triangle)) return false;
+namespace detail {
+
+/// intersect() for a triangle with an area that the ray may hit. One division decides.
+inline bool intersect_exactly(const PreparedRay& ray, const Triangle& triangle, float limit, Crossing& crossing) {
   const Vec3d a = sheared(ray, to_double(triangle.a));
   const Vec3d b = sheared(ray, to_double(triangle.b));
   const Vec3d c = sheared(ray, to_double(triangle.c));
@@ -47,11 +45,22 @@ inline bool intersect(const PreparedRay& ray, const Triangle& triangle, float li
   if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return false;
   const double det = u + v + w;
   if (det == 0) return false;
-  const double depth = (u * a.z + v * b.z + w * c.z) / det;
-  if (!accept_t(ray, depth / ray.direction_d[ray.kz], limit, crossing) || is_degenerate(triangle)) return false;
+  const double t = (u * a.z + v * b.z + w * c.z) / (det * ray.direction_d[ray.kz]);
+  if (!accept_t(ray, t, limit, crossing)) return false;
   crossing.u = without_minus_zero(static_cast<float>(v / det));
   crossing.v = without_minus_zero(static_cast<float>(w / det));
   return true;
+}
+
+}  // namespace detail
+
+/// Where the ray crosses a triangle, seen from either side; edges and corners belong to it. `limit` is the largest t of
+/// interest. Watertight after Woop, Benthin, Wald 2013, with the decision in double: there a triangle's edge functions
+/// have the right sign or are 0, and 0 is inside, so no ray slips between neighbours; t, u and v are right to about one
+/// rounding to float even for slivers and at grazing angles. A triangle without area is never hit.
+inline bool intersect(const PreparedRay& ray, const Triangle& triangle, float limit, Crossing& crossing) {
+  return detail::may_hit_triangle(ray, triangle) && detail::intersect_exactly(ray, triangle, limit, crossing) &&
+         !is_degenerate(triangle);
 }
 
 }  // namespace kerf

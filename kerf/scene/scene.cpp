@@ -89,7 +89,7 @@ OptionValues options_for(const Stage& stage, const LayoutEntry& layout) {
   const std::span<const OptionSpec> specs = stage.entry->options;
   if (layout.leaf_size == 0 || std::none_of(specs.begin(), specs.end(), is_leaf)) return options;
   const std::string name(stage.entry->name);
-  if (!options.is_set("leaf")) {
+  if (options["leaf"] > layout.leaf_size && !options.is_set("leaf")) {
     options.set(name, "leaf", layout.leaf_size);
   } else if (options["leaf"] > layout.leaf_size) {
     throw Error(ErrorCode::invalid_option, std::string(layout.name),

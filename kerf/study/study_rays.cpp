@@ -33,7 +33,8 @@ struct Place {
 RenderScene starting_scene(const SceneDescription& scene, const Camera& camera, bool with_light, bool skip_invalid,
                            const WorkLimit& limit) {
   // Rays pay for the tree; any other one gives the same hits.
-  const BuildOptions build{.structure = "early_split(budget=1.5)+binned_sah", .skip_invalid = skip_invalid, .limit = limit};
+  const BuildOptions build{
+      .structure = "early_split(budget=1.5)+binned_sah", .skip_invalid = skip_invalid, .limit = limit};
   SceneDescription copy = scene;
   if (copy.materials.empty()) copy.materials.emplace_back();
   if (with_light && !copy.is_lit) add_light(copy, camera, build);

@@ -15,9 +15,10 @@ using PrimitiveTally = std::vector<std::vector<uint64_t>>;
 
 /// The work that rays made. The same figures in every structure, added up over rays.
 struct TraceCounts {
-  uint64_t nodes = 0;               ///< nodes whose own box the ray enters, culled ones not: root, inner nodes, leaves
-  uint64_t primitives = 0;          ///< primitive tests, repeats included
-  uint64_t boxes = 0;               ///< box tests
+  uint64_t nodes = 0;       ///< nodes whose own box the ray enters, culled ones not: root, inner nodes, leaves
+  uint64_t primitives = 0;  ///< primitive tests, repeats included
+  uint64_t boxes = 0;       ///< box tests
+  static constexpr bool kCounts = true;
   PrimitiveTally* tests = nullptr;  ///< where given: the primitive tests of each primitive, added up
 
   void count_nodes(uint64_t n) { nodes += n; }
@@ -31,6 +32,7 @@ struct TraceCounts {
 
 /// Stands where counts are not wanted, and costs nothing.
 struct NoCounts {
+  static constexpr bool kCounts = false;
   void count_nodes(uint64_t) {}
   void count_primitives(std::span<const LeafSlot>) {}
   void count_boxes(uint64_t) {}
@@ -48,6 +50,16 @@ struct TraceTable {
 };
 
 namespace detail {
+
+/// A tracer of other data than itself has `static Tracer at(const void* data)`.
+template <class Tracer>
+decltype(auto) tracer_at(const void* data) {
+  if constexpr (requires { Tracer::at(data); }) {
+    return Tracer::at(data);
+  } else {
+    return *static_cast<const Tracer*>(data);
+  }
+}
 
 /// A tracer that does better with many rays at once has `template <class Counts> void trace_batch(std::span<const Ray>,
 /// std::span<Hit>, Counts&) const`.
@@ -68,24 +80,24 @@ template <class Tracer>
 inline constexpr TraceTable kTraceTable = {
     [](const void* data, const Ray& ray) {
       NoCounts counts;
-      return static_cast<const Tracer*>(data)->template trace<false>(ray, counts);
+      return detail::tracer_at<Tracer>(data).template trace<false>(ray, counts);
     },
     [](const void* data, const Ray& ray) {
       NoCounts counts;
-      return static_cast<bool>(static_cast<const Tracer*>(data)->template trace<true>(ray, counts));
+      return static_cast<bool>(detail::tracer_at<Tracer>(data).template trace<true>(ray, counts));
     },
     [](const void* data, const Ray& ray, TraceCounts& counts) {
-      return static_cast<const Tracer*>(data)->template trace<false>(ray, counts);
+      return detail::tracer_at<Tracer>(data).template trace<false>(ray, counts);
     },
     [](const void* data, const Ray& ray, TraceCounts& counts) {
-      return static_cast<bool>(static_cast<const Tracer*>(data)->template trace<true>(ray, counts));
+      return static_cast<bool>(detail::tracer_at<Tracer>(data).template trace<true>(ray, counts));
     },
     [](const void* data, std::span<const Ray> rays, std::span<Hit> hits) {
       NoCounts counts;
-      detail::trace_batch(*static_cast<const Tracer*>(data), rays, hits, counts);
+      detail::trace_batch(detail::tracer_at<Tracer>(data), rays, hits, counts);
     },
     [](const void* data, std::span<const Ray> rays, std::span<Hit> hits, TraceCounts& counts) {
-      detail::trace_batch(*static_cast<const Tracer*>(data), rays, hits, counts);
+      detail::trace_batch(detail::tracer_at<Tracer>(data), rays, hits, counts);
     },
 };
 

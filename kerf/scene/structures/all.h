@@ -5,6 +5,8 @@
 
 #include "kerf/build/bsp_sah.h"
 #include "kerf/build/top_down.h"
+#include "kerf/layout/triangle_leaf.h"
+#include "kerf/layout/wide_costs.h"
 #include "kerf/scene/structure.h"
 
 namespace kerf {
@@ -53,6 +55,32 @@ inline constexpr LayoutEntry kPacketsLayout = {
     make_packets_structure,
     true,
     true};
+
+std::unique_ptr<Structure> make_bvh4_structure(Bvh bvh, const StructureInput& input, const OptionValues& options);
+std::unique_ptr<Structure> make_bvh8_structure(Bvh bvh, const StructureInput& input, const OptionValues& options);
+inline constexpr OptionSpec kWideOptions[] = {
+    {"leaf_cost", "cost of visiting a leaf, against that of a node, for the collapse", WideCosts{}.leaf, 0, 1e30},
+    {"triangle_cost", "cost of each of its triangles, against that of a node", WideCosts{}.triangle, 0, 1e30},
+};
+inline constexpr std::string_view kWideSource =
+    "Ylitie, Karras, Laine: Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, 2017, section 3.1";
+inline constexpr LayoutEntry kBvh4Layout = {
+    "bvh4",
+    "nodes of up to four children, tested at once, and leaves of up to eight triangles, tested four at once",
+    kWideSource,
+    kWideOptions,
+    TriangleLeaf::kMost,
+    make_bvh4_structure,
+    false};
+inline constexpr LayoutEntry kBvh8Layout = {
+    "bvh8",
+    "nodes of up to eight children, tested at once, and leaves of up to eight triangles, tested at once",
+    kWideSource,
+    kWideOptions,
+    TriangleLeaf::kMost,
+    make_bvh8_structure,
+    false};
+
 std::unique_ptr<Structure> make_late_split_structure(Bvh bvh, const StructureInput& input, const OptionValues& options);
 inline constexpr OptionSpec kLateSplitOptions[] = {
     {"sa_max", "surface area above which a leaf is cut, all six faces, squared scene units", Box3f::kInfinity, 0,

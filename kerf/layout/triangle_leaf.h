@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "kerf/geometry/geometry.h"
+#include "kerf/tree/bvh.h"
+
+namespace kerf {
+
+/// What leaves consist of: 16 bytes.
+struct alignas(16) LeafUnit {
+  float values[4];
+
+  const float* floats() const { return values; }
+};
+static_assert(sizeof(LeafUnit) == 16);
+
+/// Up to eight triangles as kernels read them, without a gap: a float, the largest extent of the box around them; nine
+/// columns of `count` floats, x, y and z of the first corners, of the second, of the third; `count` slots. 4 + 44 bytes
+/// a triangle, rounded up to whole units: 48, 96, 144, 192, 224, 272, 320, 368. A kernel may read a full vector at a
+/// column's start, whatever its width up to 16 floats, since kPadding units follow the last leaf.
+struct TriangleLeaf {
+  static constexpr uint32_t kMost = 8;
+  static constexpr size_t kPadding = 4;
+
+  const float* data;
+  uint32_t count;
+
+  static constexpr size_t units(size_t count) { return (1 + 11 * count + 3) / 4; }
+
+  float extent() const { return data[0]; }
+  const float* column(uint32_t corner, uint32_t axis) const { return data + 1 + size_t{corner * 3 + axis} * count; }
+  Triangle triangle(uint32_t i) const {
+    const auto corner = [&](uint32_t c) { return Vec3f{column(c, 0)[i], column(c, 1)[i], column(c, 2)[i]}; };
+    return {corner(0), corner(1), corner(2)};
+  }
+  LeafSlot slot(uint32_t i) const {
+    uint32_t words[2];
+    std::memcpy(words, data + 1 + size_t{9} * count + size_t{2} * i, sizeof words);
+    return {words[0], words[1]};
+  }
+};
+
+/// Units of a leaf of any primitives: one that begins with their number, then their slots.
+constexpr size_t slots_units(size_t count) { return 1 + (count + 1) / 2; }
+
+/// Writes a TriangleLeaf of triangles that the slots name; `to` has room for units(count).
+void write_triangle_leaf(std::span<const LeafSlot> slots, std::span<const Geometry> geometries, LeafUnit* to);
+
+}  // namespace kerf

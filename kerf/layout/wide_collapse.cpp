@@ -1,0 +1,171 @@
+#include "kerf/layout/wide_collapse.h"
+
+#include <algorithm>
+#include <cassert>
+#include <variant>
+
+#include "kerf/base/parallel.h"
+
+namespace kerf {
+namespace {
+
+constexpr uint32_t kTaskDepth = 10;
+
+/// f(first child) and g(second child), at once in the upper levels of a tree.
+template <class F>
+void for_both(const BvhNode& node, uint32_t depth, const F& f) {
+  if (depth < kTaskDepth) {
+    parallel_invoke([&] { f(node.first); }, [&] { f(node.first + 1); });
+  } else {
+    f(node.first);
+    f(node.first + 1);
+  }
+}
+
+}  // namespace
+
+WideCollapse::WideCollapse(const Bvh& bvh, std::span<const Geometry> geometries, uint32_t width, const WideCosts& costs)
+    : bvh_(bvh), geometries_(geometries), width_(width), costs_(costs), held_(bvh.nodes.size() * sizeof(Plan)) {
+  assert(width >= 2 && width <= kMostChildren);
+  plans_.resize(bvh.nodes.size());
+  const double root = half_area(bvh.nodes[0].bounds());
+  scale_ = root > 0 ? 1 / root : 0;
+  solve(0, 0);
+  measure(0, 0);
+}
+
+bool WideCollapse::are_triangles(uint32_t node) const {
+  const std::span<const LeafSlot> slots = std::span(bvh_.slots).subspan(bvh_.nodes[node].first, bvh_.nodes[node].count);
+  return std::all_of(slots.begin(), slots.end(), [&](const LeafSlot& slot) {
+    return std::holds_alternative<TriangleMesh>(geometries_[slot.geometry()].shapes);
+  });
+}
+
+void WideCollapse::solve(uint32_t node, uint32_t depth) {
+  const BvhNode& n = bvh_.nodes[node];
+  if (n.is_leaf()) return solve_leaf(node);
+  for_both(n, depth, [&](uint32_t child) { solve(child, depth + 1); });
+  solve_inner(node);
+}
+
+void WideCollapse::solve_leaf(uint32_t node) {
+  Plan& plan = plans_[node];
+  const BvhNode& n = bvh_.nodes[node];
+  FewSlots slots;
+  const uint32_t count = are_triangles(node) ? gather(node, slots, 0) : TriangleLeaf::kMost + 1;
+  const bool fits = count <= TriangleLeaf::kMost;
+  plan.is_leaf = true;
+  plan.slots = fits ? static_cast<uint8_t>(count) : 0;
+  const double cost = fits ? costs_.leaf + costs_.triangle * count : costs_.primitive * n.count;
+  plan.cost.fill(static_cast<float>(scale_ * half_area(n.bounds()) * cost));
+  plan.first.fill(0);
+}
+
+void WideCollapse::solve_inner(uint32_t node) {
+  Plan& plan = plans_[node];
+  const BvhNode& n = bvh_.nodes[node];
+  const Plan &a = plans_[n.first], &b = plans_[n.first + 1];
+  std::array<float, kMostChildren> divided;  // the cheapest of i + 1 subtrees, at least one in each child
+  plan.first.fill(0);
+  for (uint32_t i = 1; i < width_; ++i) {
+    divided[i] = a.cost[0] + b.cost[i - 1];
+    plan.first[i] = 1;
+    for (uint32_t k = 1; k < i; ++k) {
+      const float cost = a.cost[k] + b.cost[i - 1 - k];
+      if (cost >= divided[i]) continue;
+      divided[i] = cost;
+      plan.first[i] = static_cast<uint8_t>(k + 1);
+    }
+  }
+  const double area = scale_ * half_area(n.bounds());
+  // As an inner node, whose own children divide the full width; as a leaf if all fit.
+  plan.first[0] = plan.first[width_ - 1];
+  plan.cost[0] = static_cast<float>(area * costs_.node) + divided[width_ - 1];
+  if (a.slots > 0 && b.slots > 0) {
+    FewSlots slots;
+    const uint32_t count = gather(node, slots, 0);
+    const auto cost = static_cast<float>(area * (costs_.leaf + costs_.triangle * count));
+    if (count <= TriangleLeaf::kMost) {
+      plan.slots = static_cast<uint8_t>(count);
+      plan.is_leaf = cost <= plan.cost[0];
+      if (plan.is_leaf) plan.cost[0] = cost;
+    }
+  }
+  for (uint32_t i = 1; i < width_; ++i) {
+    const bool is_better = divided[i] < plan.cost[i - 1];
+    if (!is_better) plan.first[i] = 0;
+    plan.cost[i] = is_better ? divided[i] : plan.cost[i - 1];
+  }
+}
+
+/// The different primitives of a subtree of triangles; more than kMost where there are more.
+uint32_t WideCollapse::gather(uint32_t node, FewSlots& slots, uint32_t count) const {
+  const BvhNode& n = bvh_.nodes[node];
+  if (!n.is_leaf()) {
+    count = gather(n.first, slots, count);
+    return count > TriangleLeaf::kMost ? count : gather(n.first + 1, slots, count);
+  }
+  for (uint32_t i = n.first; i < n.first + n.count; ++i) {
+    const LeafSlot& slot = bvh_.slots[i];
+    const auto end = slots.begin() + count;
+    if (slot.is_repeated() && std::find(slots.begin(), end, slot) != end) continue;
+    if (count == TriangleLeaf::kMost) return count + 1;
+    slots[count++] = slot;
+  }
+  return count;
+}
+
+void WideCollapse::collect(uint32_t node, uint32_t most, Children& children, uint32_t& count) const {
+  const Plan& plan = plans_[node];
+  while (most > 1 && plan.first[most - 1] == 0) --most;
+  if (most == 1) {
+    children[count++] = node;
+    return;
+  }
+  const uint32_t first = plan.first[most - 1];
+  collect(bvh_.nodes[node].first, first, children, count);
+  collect(bvh_.nodes[node].first + 1, most - first, children, count);
+}
+
+uint32_t WideCollapse::children(uint32_t node, Children& children) const {
+  assert(!is_leaf(node));
+  const uint32_t first = plans_[node].first[0];
+  uint32_t count = 0;
+  collect(bvh_.nodes[node].first, first, children, count);
+  collect(bvh_.nodes[node].first + 1, width_ - first, children, count);
+  const auto area = [&](uint32_t child) { return half_area(bvh_.nodes[child].bounds()); };
+  std::stable_sort(children.begin(), children.begin() + count,
+                   [&](uint32_t a, uint32_t b) { return area(a) > area(b); });
+  return count;
+}
+
+std::span<const LeafSlot> WideCollapse::leaf_slots(uint32_t node, FewSlots& few) const {
+  const BvhNode& n = bvh_.nodes[node];
+  if (!is_triangles(node)) return std::span(bvh_.slots).subspan(n.first, n.count);
+  return std::span(few).first(gather(node, few, 0));
+}
+
+void WideCollapse::measure(uint32_t node, uint32_t depth) {
+  Plan& plan = plans_[node];
+  if (plan.is_leaf) {
+    plan.size.units = plan.slots > 0 ? TriangleLeaf::units(plan.slots) : slots_units(bvh_.nodes[node].count);
+    return;
+  }
+  Children all;
+  const uint32_t count = children(node, all);
+  const auto some = [&](uint32_t begin, uint32_t end) {
+    for (uint32_t i = begin; i < end; ++i) measure(all[i], depth + 1);
+  };
+  if (depth < kTaskDepth / 2) {
+    parallel_invoke([&] { some(0, count / 2); }, [&] { some(count / 2, count); });
+  } else {
+    some(0, count);
+  }
+  plan.size.nodes = 1;
+  for (uint32_t i = 0; i < count; ++i) {
+    plan.size.nodes += plans_[all[i]].size.nodes;
+    plan.size.units += plans_[all[i]].size.units;
+  }
+}
+
+}  // namespace kerf

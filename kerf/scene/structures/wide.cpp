@@ -1,0 +1,62 @@
+#include "kerf/scene/structures/all.h"
+#include "kerf/trace/trace_wide.h"
+
+namespace kerf {
+namespace {
+
+template <uint32_t kWidth>
+class WideStructure : public Structure {
+ public:
+  WideStructure(const Bvh& bvh, const StructureInput& input, const WideCosts& costs)
+      : kernels_(wide_kernels<kWidth>()) {
+    tracer_.layout = make_wide_bvh<kWidth>(bvh, input.geometries, costs);
+    tracer_.geometries = input.geometries;
+  }
+
+  const TraceTable& table() const override { return *kernels_.table; }
+  const void* data() const override { return &tracer_; }
+  size_t bytes() const override { return tracer_.layout.bytes(); }
+  uint64_t hash() const override { return tree_hash(tracer_.layout); }
+  std::optional<std::string> find_fault() const override {
+    return kerf::find_fault(tracer_.layout, tracer_.geometries);
+  }
+
+  void visit_nodes(const std::function<void(const NodeView&)>& visit) const override {
+    if (!tracer_.layout.is_empty()) visit_child(tracer_.layout.root, tracer_.layout.bounds, 0, visit);
+  }
+
+ private:
+  void visit_child(WideChild child, const Box3f& bounds, uint32_t depth,
+                   const std::function<void(const NodeView&)>& visit) const {
+    const std::vector<LeafSlot> slots = child.is_leaf() ? tracer_.layout.slots(child) : std::vector<LeafSlot>{};
+    visit({bounds, depth, child.is_leaf(), slots});
+    if (child.is_leaf()) return;
+    const WideNode<kWidth>& node = tracer_.layout.nodes[child.number()];
+    for (uint32_t i = 0; i < kWidth && node.has_child(i); ++i) {
+      visit_child(node.child[i], node.bounds(i), depth + 1, visit);
+    }
+  }
+
+  WideKernels kernels_;
+  WideTracer<kWidth> tracer_;
+};
+
+template <uint32_t kWidth>
+std::unique_ptr<Structure> make(Bvh bvh, const StructureInput& input, const OptionValues& options) {
+  input.limit.check(bvh.bytes());
+  WideCosts costs;
+  costs.leaf = options["leaf_cost"];
+  costs.triangle = options["triangle_cost"];
+  return std::make_unique<WideStructure<kWidth>>(bvh, input, costs);
+}
+
+}  // namespace
+
+std::unique_ptr<Structure> make_bvh4_structure(Bvh bvh, const StructureInput& input, const OptionValues& options) {
+  return make<4>(std::move(bvh), input, options);
+}
+std::unique_ptr<Structure> make_bvh8_structure(Bvh bvh, const StructureInput& input, const OptionValues& options) {
+  return make<8>(std::move(bvh), input, options);
+}
+
+}  // namespace kerf

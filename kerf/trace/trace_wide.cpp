@@ -1,0 +1,331 @@
+#include "kerf/trace/trace_wide.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "kerf/base/fp_environment.h"
+#include "kerf/geometry/ray_triangle.h"
+#include "kerf/trace/leaf.h"
+#include "kerf/trace/wide_ray.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kerf/trace/trace_wide.cpp"
+#include "kerf/base/simd.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace kerf {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// The lanes of a mask as bits, the first lowest.
+template <class D, class M>
+HWY_INLINE uint32_t bits_of(D d, M mask) {
+  uint8_t bits[8];
+  hn::StoreMaskBits(d, mask, bits);
+  return bits[0];
+}
+
+/// What the box tests need of a ray, in registers.
+template <uint32_t kWidth, bool kFused>
+struct BoxTests {
+  using Lanes = hn::CappedTag<float, kWidth>;
+  using V = hn::Vec<Lanes>;
+
+  V inverse_x, inverse_y, inverse_z;
+  V near_x, near_y, near_z, far_x, far_y, far_z;  ///< fused: what is added to the product; else the moved origin
+  V t_min;
+  uint32_t row_x, row_y, row_z;  ///< where a node's near sides begin; the far ones begin at that ^ kWidth
+
+  BoxTests(const WideRay& ray, float first)
+      : inverse_x(all(ray.inverse[0])),
+        inverse_y(all(ray.inverse[1])),
+        inverse_z(all(ray.inverse[2])),
+        near_x(all(kFused ? ray.near_offset[0] : ray.origin_near[0])),
+        near_y(all(kFused ? ray.near_offset[1] : ray.origin_near[1])),
+        near_z(all(kFused ? ray.near_offset[2] : ray.origin_near[2])),
+        far_x(all(kFused ? ray.far_offset[0] : ray.origin_far[0])),
+        far_y(all(kFused ? ray.far_offset[1] : ray.origin_far[1])),
+        far_z(all(kFused ? ray.far_offset[2] : ray.origin_far[2])),
+        t_min(all(first)),
+        row_x(ray.near_upper[0] * kWidth),
+        row_y((2 + ray.near_upper[1]) * kWidth),
+        row_z((4 + ray.near_upper[2]) * kWidth) {}
+
+  /// Which children the ray enters within [t_min, limit], and where.
+  HWY_INLINE uint32_t enter(const WideNode<kWidth>& node, float limit, float* entry) const {
+    const Lanes d;
+    const float* const sides = &node.sides[0][0][0];
+    uint32_t entered = 0;
+    for (uint32_t i = 0; i < kWidth; i += hn::MaxLanes(d)) {
+      const auto x0 = at(sides + row_x + i, inverse_x, near_x), x1 = at(sides + (row_x ^ kWidth) + i, inverse_x, far_x);
+      const auto y0 = at(sides + row_y + i, inverse_y, near_y), y1 = at(sides + (row_y ^ kWidth) + i, inverse_y, far_y);
+      const auto z0 = at(sides + row_z + i, inverse_z, near_z), z1 = at(sides + (row_z ^ kWidth) + i, inverse_z, far_z);
+      const auto near = hn::Max(hn::Max(x0, y0), hn::Max(z0, t_min));
+      const auto far = hn::Min(hn::Min(x1, y1), hn::Min(z1, hn::Set(d, limit)));
+      hn::Store(near, d, entry + i);
+      entered |= bits_of(d, hn::Le(near, far)) << i;
+    }
+    return entered;
+  }
+
+ private:
+  static HWY_INLINE V all(float value) { return hn::Set(Lanes(), value); }
+  static HWY_INLINE V at(const float* sides, V inverse, V shift) {
+    const auto side = hn::Load(Lanes(), sides);
+    if constexpr (kFused) return hn::MulAdd(side, inverse, shift);
+    return hn::Mul(hn::Sub(side, shift), inverse);
+  }
+};
+
+/// detail::may_hit_triangle() for leaves.
+struct LeafTests {
+  using Lanes = hn::CappedTag<float, TriangleLeaf::kMost>;
+  using V = hn::Vec<Lanes>;
+
+  V origin_x, origin_y, origin_z, shear_x, shear_y, direction_sign;
+  uint32_t kx, ky, kz;
+  float t_min, depth_per_t;
+
+  explicit LeafTests(const PreparedRay& ray)
+      : origin_x(hn::Set(Lanes(), (&ray.origin.x)[ray.kx])),
+        origin_y(hn::Set(Lanes(), (&ray.origin.x)[ray.ky])),
+        origin_z(hn::Set(Lanes(), (&ray.origin.x)[ray.kz])),
+        shear_x(hn::Set(Lanes(), ray.shear_x)),
+        shear_y(hn::Set(Lanes(), ray.shear_y)),
+        direction_sign(hn::Set(Lanes(), ray.direction_d[ray.kz] < 0 ? -0.0F : 0.0F)),
+        kx(ray.kx),
+        ky(ray.ky),
+        kz(ray.kz),
+        t_min(ray.t_min),
+        depth_per_t(std::abs(static_cast<float>(ray.direction_d[ray.kz]))) {}
+
+  /// The triangles that the ray may hit, as bits. One bound on the error for all: the ray enters the leaf's box, at
+  /// `entry` at the earliest, so each corner is within the extent of the box around all triangles of a point of the ray
+  /// along each axis, and within twice that in the sheared space.
+  HWY_INLINE uint32_t may_hit(const TriangleLeaf& leaf, float limit) const {
+    const Lanes d;
+    const Bounds bounds{t_min * depth_per_t, limit * depth_per_t};
+    const float* const xs = leaf.column(0, 0) + size_t{kx} * leaf.count;
+    const float* const ys = leaf.column(0, 0) + size_t{ky} * leaf.count;
+    const float* const zs = leaf.column(0, 0) + size_t{kz} * leaf.count;
+    const size_t next = size_t{3} * leaf.count;
+    if constexpr (hn::MaxLanes(d) == TriangleLeaf::kMost) {
+      return some(xs, ys, zs, next, bounds) & ((1U << leaf.count) - 1);
+    } else {
+      uint32_t found = 0;
+      for (uint32_t i = 0; i < leaf.count; i += hn::MaxLanes(d)) {
+        found |= some(xs + i, ys + i, zs + i, next, bounds) << i;
+      }
+      return found & ((1U << leaf.count) - 1);
+    }
+  }
+
+ private:
+  struct Bounds {
+    float first, last;  ///< depths of interest
+  };
+
+  HWY_INLINE uint32_t some(const float* xs, const float* ys, const float* zs, size_t next, const Bounds& bounds) const {
+    const Lanes d;
+    const auto az = hn::Sub(hn::LoadU(d, zs), origin_z);
+    const auto bz = hn::Sub(hn::LoadU(d, zs + next), origin_z);
+    const auto cz = hn::Sub(hn::LoadU(d, zs + 2 * next), origin_z);
+    const auto ax = hn::NegMulAdd(shear_x, az, hn::Sub(hn::LoadU(d, xs), origin_x));
+    const auto bx = hn::NegMulAdd(shear_x, bz, hn::Sub(hn::LoadU(d, xs + next), origin_x));
+    const auto cx = hn::NegMulAdd(shear_x, cz, hn::Sub(hn::LoadU(d, xs + 2 * next), origin_x));
+    const auto ay = hn::NegMulAdd(shear_y, az, hn::Sub(hn::LoadU(d, ys), origin_y));
+    const auto by = hn::NegMulAdd(shear_y, bz, hn::Sub(hn::LoadU(d, ys + next), origin_y));
+    const auto cy = hn::NegMulAdd(shear_y, cz, hn::Sub(hn::LoadU(d, ys + 2 * next), origin_y));
+    const auto u = hn::MulSub(cx, by, hn::Mul(cy, bx));
+    const auto v = hn::MulSub(ax, cy, hn::Mul(ay, cx));
+    const auto w = hn::MulSub(bx, ay, hn::Mul(by, ax));
+    const auto sx = hn::Max(hn::Max(hn::Abs(ax), hn::Abs(bx)), hn::Abs(cx));
+    const auto sy = hn::Max(hn::Max(hn::Abs(ay), hn::Abs(by)), hn::Abs(cy));
+    const auto s = hn::Max(sx, sy);
+    const auto depth = hn::Max(hn::Max(hn::Abs(az), hn::Abs(bz)), hn::Abs(cz));
+    const auto error = hn::MulAdd(hn::Mul(hn::Set(d, 0x1p-19F), s), hn::Add(s, depth), hn::Set(d, 0x1p-120F));
+    const auto low = hn::Min(hn::Min(u, v), w), high = hn::Max(hn::Max(u, v), w);
+    // What is not a number counts for neither: Min and Max return one of their operands.
+    const auto outside = hn::And(hn::Lt(low, hn::Neg(error)), hn::Gt(high, error));
+    if (hn::AllTrue(d, outside)) return 0;
+    // The depth is sum / area, of the ray's sign; what is farther or nearer by more than any error is left out.
+    const auto area = hn::Add(hn::Add(u, v), w);
+    const auto sum = hn::MulAdd(w, cz, hn::MulAdd(v, bz, hn::Mul(u, az)));
+    const auto size = hn::Abs(area);
+    const auto sign = hn::Xor(hn::And(area, hn::Set(d, -0.0F)), direction_sign);
+    const auto signed_sum = hn::Xor(sum, sign);
+    const auto share = hn::MulAdd(hn::Set(d, 0x1p-19F), size, hn::Mul(hn::Set(d, 8), error));
+    const auto first = hn::Set(d, bounds.first), last = hn::Set(d, bounds.last);
+    const auto from_last = hn::NegMulAdd(last, size, signed_sum), from_first = hn::NegMulAdd(first, size, signed_sum);
+    const auto is_behind = hn::Gt(from_last, hn::Mul(share, hn::Add(depth, hn::Abs(last))));
+    const auto is_before = hn::Lt(from_first, hn::Neg(hn::Mul(share, hn::Add(depth, hn::Abs(first)))));
+    return bits_of(d, hn::Or(outside, hn::Or(is_behind, is_before))) ^ ((1U << hn::MaxLanes(d)) - 1);
+  }
+};
+
+/// A ray on its way through a WideBvh.
+template <uint32_t kWidth, bool kFused, bool kAny, class Counts>
+class Walk {
+ public:
+  Walk(const WideTracer<kWidth>& tracer, const PreparedRay& ray, const WideRay& wide, Hit& best, Counts& counts)
+      : tracer_(tracer), ray_(ray), best_(best), counts_(counts), boxes_(wide, ray.t_min), leaves_(ray) {}
+
+  HWY_INLINE void run() {
+    constexpr uint32_t kMostWaiting = (kWidth - 1) * kMaxDepth;  // all children but one of each node above
+    uint64_t waiting[kMostWaiting + kWidth];
+    uint64_t* top = waiting;
+    const WideNode<kWidth>* const nodes = tracer_.layout.nodes.data();
+    uint64_t current = key(tracer_.layout.root, ray_.t_min);
+    while (true) {
+      counts_.count_nodes(1);
+      const WideChild child{static_cast<uint32_t>(current)};
+      if (!child.is_leaf()) {
+        const WideNode<kWidth>& node = nodes[child.number()];
+        HWY_ALIGN float entry[kWidth];
+        counts_.count_boxes(kWidth);
+        uint32_t entered = boxes_.enter(node, best_.t, entry);
+        if (entered != 0) {
+          current = take(node, entry, entered);
+          if (entered == 0) continue;
+          const uint64_t next = take(node, entry, entered);
+          if (entered == 0) {
+            *top++ = std::max(current, next);
+            current = std::min(current, next);
+            continue;
+          }
+          uint64_t* const base = top;
+          *top++ = current;
+          *top++ = next;
+          do {
+            *top++ = take(node, entry, entered);
+          } while (entered != 0);
+          if constexpr (!kAny) sort(base, top);
+          current = *--top;
+          continue;
+        }
+      } else if (test_leaf(child)) {
+        return;
+      }
+      do {
+        if (top == waiting) return;
+        current = *--top;
+      } while (entry_of(current) > best_.t);
+    }
+  }
+
+ private:
+  /// Nearer first as numbers, while entries are not negative; below that only the order suffers.
+  static HWY_INLINE uint64_t key(WideChild child, float entry) {
+    return uint64_t{std::bit_cast<uint32_t>(entry)} << 32 | child.word;
+  }
+  static HWY_INLINE float entry_of(uint64_t key) { return std::bit_cast<float>(static_cast<uint32_t>(key >> 32)); }
+
+  static HWY_INLINE uint64_t take(const WideNode<kWidth>& node, const float* entry, uint32_t& entered) {
+    const auto i = static_cast<uint32_t>(std::countr_zero(entered));
+    entered &= entered - 1;
+    return key(node.child[i], entry[i]);
+  }
+
+  /// The nearest last.
+  static HWY_INLINE void sort(uint64_t* begin, uint64_t* end) {
+    for (uint64_t* i = begin + 1; i < end; ++i) {
+      const uint64_t moved = *i;
+      uint64_t* j = i;
+      for (; j > begin && j[-1] < moved; --j) *j = j[-1];
+      *j = moved;
+    }
+  }
+
+  /// Whether the walk is over: any hit is enough.
+  HWY_INLINE bool test_leaf(WideChild leaf) {
+    if (leaf.kind() == WideChild::kSlots) return test_slots(leaf);
+    const TriangleLeaf triangles = tracer_.layout.triangles(leaf);
+    if constexpr (Counts::kCounts) {
+      for (const LeafSlot& slot : tracer_.layout.slots(leaf)) counts_.count_primitives(std::span(&slot, 1));
+    }
+    const uint32_t found = leaves_.may_hit(triangles, best_.t);
+    return found != 0 && test_triangles(triangles, found);
+  }
+
+  HWY_NOINLINE bool test_triangles(const TriangleLeaf& triangles, uint32_t found) {
+    for (; found != 0; found &= found - 1) {
+      const auto i = static_cast<uint32_t>(std::countr_zero(found));
+      Crossing crossing;
+      if (!detail::intersect_exactly(ray_, triangles.triangle(i), best_.t, crossing)) continue;
+      const LeafSlot slot = triangles.slot(i);
+      if ((tracer_.geometries[slot.geometry()].mask & ray_.mask) == 0) continue;
+      const Hit hit{crossing.t, crossing.u, crossing.v, slot.primitive, slot.geometry(), kNone};
+      if (best_ && !closer(hit, best_)) continue;
+      best_ = hit;
+      if (kAny) return true;
+    }
+    return false;
+  }
+
+  HWY_NOINLINE bool test_slots(WideChild leaf) {
+    for (const LeafSlot& slot : tracer_.layout.slots(leaf)) {
+      if (test_primitive(tracer_.geometries, slot, ray_, best_, counts_) && kAny) return true;
+    }
+    return false;
+  }
+
+  const WideTracer<kWidth>& tracer_;
+  const PreparedRay& ray_;
+  Hit& best_;
+  Counts& counts_;
+  const BoxTests<kWidth, kFused> boxes_;
+  const LeafTests leaves_;
+};
+
+template <uint32_t kWidth>
+struct Kernel {
+  const WideTracer<kWidth>& tracer;
+
+  static Kernel at(const void* data) { return {*static_cast<const WideTracer<kWidth>*>(data)}; }
+
+  template <bool kAny, class Counts>
+  Hit trace(const Ray& ray, Counts& counts) const {
+    const StandardFloat standard;
+    const PreparedRay prepared(ray);
+    if (!prepared.valid || tracer.layout.is_empty()) return {};
+    const Box3f& bounds = tracer.layout.bounds;
+    const Float4 lower{bounds.lower.x, bounds.lower.y, bounds.lower.z, 0};
+    const Float4 upper{bounds.upper.x, bounds.upper.y, bounds.upper.z, 0};
+    const WideRay wide(prepared, ray.direction, lower, upper);
+    Hit best;
+    best.t = prepared.t_max;
+    counts.count_boxes(1);
+    if (!wide.enters(lower, upper, prepared.t_min, best.t)) return {};
+    if (wide.is_fused) {
+      Walk<kWidth, true, kAny, Counts>(tracer, prepared, wide, best, counts).run();
+    } else {
+      Walk<kWidth, false, kAny, Counts>(tracer, prepared, wide, best, counts).run();
+    }
+    return finished(best);
+  }
+};
+
+WideKernels kernels4() { return {&kTraceTable<Kernel<4>>, hwy::TargetName(HWY_TARGET)}; }
+WideKernels kernels8() { return {&kTraceTable<Kernel<8>>, hwy::TargetName(HWY_TARGET)}; }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace kerf
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace kerf {
+
+HWY_EXPORT(kernels4);
+HWY_EXPORT(kernels8);
+
+template <>
+WideKernels wide_kernels<4>() {
+  return HWY_DYNAMIC_DISPATCH(kernels4)();
+}
+template <>
+WideKernels wide_kernels<8>() {
+  return HWY_DYNAMIC_DISPATCH(kernels8)();
+}
+
+}  // namespace kerf
+#endif

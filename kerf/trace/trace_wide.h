@@ -1,0 +1,28 @@
+#pragma once
+
+#include <span>
+
+#include "kerf/layout/wide_bvh.h"
+#include "kerf/trace/trace_table.h"
+
+namespace kerf {
+
+/// A WideBvh and what its slots name: what the kernels work on.
+template <uint32_t kWidth>
+struct WideTracer {
+  WideBvh<kWidth> layout;
+  std::span<const Geometry> geometries;
+};
+
+/// What one instruction set offers.
+struct WideKernels {
+  const TraceTable* table;      ///< its data is a WideTracer
+  const char* instruction_set;  ///< as Highway calls it
+};
+
+/// The kernels for the best instruction set of this machine; to be asked once, not for each ray. Hits are the same bits
+/// for all.
+template <uint32_t kWidth>
+WideKernels wide_kernels();
+
+}  // namespace kerf
