@@ -1,0 +1,252 @@
+#include "kerf/study/bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <new>
+
+#include "kerf/base/error.h"
+#include "kerf/base/parallel.h"
+#include "kerf/scene/menu.h"
+#include "kerf/study/bench_kerf.h"
+#include "kerf/study/embree_rival.h"
+#include "kerf/study/ray_order.h"
+
+namespace kerf {
+namespace {
+
+constexpr std::string_view kWideLayouts[] = {"bvh8", "bvh4"};
+constexpr int kLeastBuilds = 3;
+constexpr double kSecondsOfBuilding = 30;  // for more builds than that, of all rows together
+constexpr float kSameDistance = 1e-3F;     // Embree's is not exact
+
+bool is_same_answer(const Hit& a, const Hit& b) {
+  if (!a || !b) return !a && !b;
+  return std::abs(a.t - b.t) <= kSameDistance * std::max(std::abs(a.t), std::abs(b.t));
+}
+
+template <class F>
+size_t count_unlike(const std::vector<Hit>& a, const std::vector<Hit>& b, F&& is_like) {
+  size_t count = 0;
+  for (size_t i = 0; i < a.size(); ++i) count += is_like(a[i], b[i]) ? 0 : 1;
+  return count;
+}
+
+class Bench {
+ public:
+  Bench(const StudyScene& scene, const std::string& turn, const BenchOptions& options)
+      : input_(scene), options_(options), measure_(scene.description, options_) {
+    if (options_.threads <= 0) options_.threads = thread_count();
+    result_.name = scene.name;
+    result_.turn = turn;
+    result_.threads = options_.threads;
+    result_.triangles = primitive_count(scene.description);
+    for (const std::string& row : options.rows) {
+      subjects_.push_back(kerf_subject(scene.description, row, options_));
+    }
+  }
+
+  BenchScene run() {
+    make_rays();
+    add_embree();
+    for (const auto& subject : subjects_) result_.rows.push_back(subject->describe());
+    steps_ = static_cast<double>(subjects_.size() * (2 + static_cast<size_t>(options_.repeat)));
+    build_rows();
+    compare_rows();
+    time_rows();
+    for (BenchRow& row : result_.rows) keep_timed(row);
+    return std::move(result_);
+  }
+
+ private:
+  void make_rays() {
+    rays_ = make_study_rays(input_.description, input_.camera, options_.width, options_.height, options_.kinds,
+                            options_.skip_invalid);
+    for (const StudyRays& rays : rays_) {
+      result_.kinds.push_back(rays.kind);
+      result_.ray_counts.push_back(rays.rays.size());
+      orders_.push_back(ray_order(rays.rays));
+    }
+  }
+
+  void add_embree() {
+#ifdef KERF_HAVE_EMBREE
+    if (!options_.with_embree) return;
+    EmbreeRival rival = embree_rival(input_.description, options_.threads);
+    result_.rival = std::move(rival.settings);
+    for (auto& subject : rival.subjects) subjects_.push_back(std::move(subject));
+#endif
+  }
+
+  /// False from the first time on that progress() wants no more.
+  bool tell(const char* what, const BenchRow& row) {
+    if (options_.progress && !is_stopped_) {
+      is_stopped_ = !options_.progress(std::min(1.0, done_ / steps_),
+                                       fmt::format("{}: {} {}", result_.title(), what, row.name()));
+    }
+    return !is_stopped_;
+  }
+
+  /// Calls f(); gives the row up with a sentence where it reaches a limit.
+  template <class F>
+  void within_limits(size_t i, F&& f) {
+    try {
+      f();
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::stopped && error.code() != ErrorCode::too_large &&
+          error.code() != ErrorCode::invalid_option) {
+        throw;
+      }
+      give_up(i, error.what());
+    } catch (const std::bad_alloc&) {
+      give_up(i, "there is not enough memory");
+    }
+  }
+
+  void give_up(size_t i, const std::string& why) {
+    const bool is_interrupted = options_.cancelled != nullptr && *options_.cancelled;
+    subjects_[i].reset();
+    if (is_interrupted && result_.rows[i].finished) return;  // what was measured stays
+    result_.rows[i].finished = false;
+    result_.rows[i].why_not = is_interrupted ? "it was interrupted" : why;
+  }
+
+  bool is_there(size_t i) const { return subjects_[i] != nullptr && result_.rows[i].finished; }
+
+  void build_rows() {
+    for (size_t i = 0; i < subjects_.size() && tell("build", result_.rows[i]); ++i) {
+      within_limits(i, [&] { result_.rows[i] = subjects_[i]->build(measure_.limit()); });
+      done_ += 1;
+    }
+  }
+
+  RaysToTrace rays_of(size_t kind) const { return {rays_[kind], orders_[kind], options_.threads}; }
+
+  std::vector<Hit> answers(size_t i, size_t kind, Feed feed) const {
+    const std::unique_ptr<BenchPass> pass = subjects_[i]->prepare(rays_of(kind), feed);
+    pass->trace();
+    return pass->hits();
+  }
+
+  /// The answers of the first row that `is_it`, with each kind of rays; nothing without one.
+  template <class F>
+  std::vector<std::vector<Hit>> answers_of(F&& is_it) const {
+    std::vector<std::vector<Hit>> all;
+    const auto found = std::find_if(result_.rows.begin(), result_.rows.end(),
+                                    [&](const BenchRow& row) { return row.finished && is_it(row); });
+    if (found == result_.rows.end()) return all;
+    const auto i = static_cast<size_t>(found - result_.rows.begin());
+    for (size_t kind = 0; kind < rays_.size(); ++kind) all.push_back(answers(i, kind, Feed::loop));
+    return all;
+  }
+
+  /// One run of everything that is to be timed, for its hits; it warms up what is warmed up by tracing.
+  void compare_rows() {
+    if (is_stopped_) return;
+    const auto robust = answers_of([](const BenchRow& row) { return row.quality == "robust"; });
+    const auto first = answers_of([](const BenchRow& row) { return row.engine == BenchEngine::kerf; });
+    for (size_t i = 0; i < subjects_.size() && tell("compare", result_.rows[i]); ++i) {
+      for (size_t kind = 0; kind < rays_.size() && is_there(i); ++kind) {
+        for (const Feed feed : subjects_[i]->feeds()) {
+          const std::vector<Hit> hits = answers(i, kind, feed);
+          BenchRun run{kind, feed, {}, {}, {}, {}};
+          for (const Hit& hit : hits) run.hits += hit ? 1 : 0;
+          if (!robust.empty()) run.unlike_robust = count_unlike(hits, robust[kind], is_same_answer);
+          if (result_.rows[i].engine == BenchEngine::kerf) {
+            run.unlike_kerf = count_unlike(hits, first[kind], std::equal_to<>());
+          }
+          result_.rows[i].runs.push_back(std::move(run));
+        }
+      }
+      done_ += 1;
+    }
+  }
+
+  /// Rows take turns, every other time backwards, so that none always comes after the same one; then in building, as
+  /// long as there is time for it.
+  void time_rows() {
+    std::vector<size_t> turns(subjects_.size());
+    double seconds = 0;
+    for (size_t i = 0; i < turns.size(); ++i) {
+      turns[i] = i;
+      if (is_there(i)) seconds += result_.rows[i].builds.front();
+    }
+    for (int run = 0; run < options_.repeat && !is_stopped_; ++run) {
+      for (size_t kind = 0; kind < rays_.size(); ++kind) time_kind(turns, kind);
+      const bool has_time = run + 1 < kLeastBuilds || seconds * (run + 1) < kSecondsOfBuilding;
+      for (const size_t i : turns) {
+        if (run > 0 && has_time && is_there(i) && tell("build", result_.rows[i])) build_again(i);
+      }
+      std::reverse(turns.begin(), turns.end());
+    }
+  }
+
+  void time_kind(const std::vector<size_t>& turns, size_t kind) {
+    for (const size_t i : turns) {
+      if (!is_there(i) || !tell("trace", result_.rows[i])) continue;
+      for (BenchRun& run : result_.rows[i].runs) {
+        if (run.kind != kind || is_stopped_) continue;
+        const std::unique_ptr<BenchPass> pass = subjects_[i]->prepare(rays_of(kind), run.feed);
+        const auto start = std::chrono::steady_clock::now();
+        pass->trace();
+        run.seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        if (run.seconds.back() <= options_.limit_seconds) continue;
+        give_up(i, "tracing its rays took more than the time allowed");
+        break;
+      }
+      done_ += 1.0 / static_cast<double>(rays_.size());
+    }
+  }
+
+  void build_again(size_t i) {
+    try {
+      result_.rows[i].builds.push_back(subjects_[i]->time_build(measure_.limit()));
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::stopped) throw;
+    } catch (const std::bad_alloc&) {  // what is there is kept
+    }
+  }
+
+  /// Runs that an interrupt left without a time say nothing.
+  static void keep_timed(BenchRow& row) {
+    std::erase_if(row.runs, [](const BenchRun& run) { return run.seconds.empty(); });
+    if (!row.finished || !row.runs.empty()) return;
+    row.finished = false;
+    row.why_not = "it was interrupted";
+  }
+
+  const StudyScene& input_;
+  BenchOptions options_;
+  RowMeasure measure_;
+  BenchScene result_;
+  std::vector<StudyRays> rays_;
+  std::vector<std::vector<uint32_t>> orders_;            // of each kind
+  std::vector<std::unique_ptr<BenchSubject>> subjects_;  // as result_.rows
+  double done_ = 0, steps_ = 1;
+  bool is_stopped_ = false;
+};
+
+}  // namespace
+
+std::vector<std::string> bench_rows() {
+  std::vector<std::string> rows;
+  for (const PresetEntry& preset : presets()) {
+    rows.emplace_back(preset.name);
+    for (const std::string_view wide : kWideLayouts) {
+      const auto is_it = [&](const MenuEntry& entry) { return entry.name == wide; };
+      if (std::any_of(menu().begin(), menu().end(), is_it)) {
+        rows.push_back(fmt::format("{}+{}", preset.name, wide));
+      }
+    }
+  }
+  return rows;
+}
+
+BenchScene bench(const StudyScene& scene, const std::string& turn, const BenchOptions& options) {
+  return Bench(scene, turn, options).run();
+}
+
+}  // namespace kerf
