@@ -125,38 +125,55 @@ class Bench {
 
   RaysToTrace rays_of(size_t kind) const { return {rays_[kind], orders_[kind], options_.threads}; }
 
-  std::vector<Hit> answers(size_t i, size_t kind, Feed feed) const {
-    const std::unique_ptr<BenchPass> pass = subjects_[i]->prepare(rays_of(kind), feed);
+  std::vector<Hit> answers(size_t i, const RaysToTrace& rays, Feed feed) const {
+    const std::unique_ptr<BenchPass> pass = subjects_[i]->prepare(rays, feed);
     pass->trace();
     return pass->hits();
   }
 
-  /// The answers of the first row that `is_it`, with each kind of rays; nothing without one.
+  /// The first finished row that `is_it`, by number.
   template <class F>
-  std::vector<std::vector<Hit>> answers_of(F&& is_it) const {
-    std::vector<std::vector<Hit>> all;
-    const auto found = std::find_if(result_.rows.begin(), result_.rows.end(),
-                                    [&](const BenchRow& row) { return row.finished && is_it(row); });
-    if (found == result_.rows.end()) return all;
-    const auto i = static_cast<size_t>(found - result_.rows.begin());
-    for (size_t kind = 0; kind < rays_.size(); ++kind) all.push_back(answers(i, kind, Feed::loop));
-    return all;
+  std::optional<size_t> find(F&& is_it) const {
+    for (size_t i = 0; i < result_.rows.size(); ++i) {
+      if (is_there(i) && is_it(result_.rows[i])) return i;
+    }
+    return std::nullopt;
+  }
+
+  BenchVerdicts judge_kind(size_t kerf, size_t robust, size_t kind) const {
+    StudyRays rays = rays_[kind];
+    rays.any_hit = false;
+    const RaysToTrace all{rays, orders_[kind], options_.threads};
+    const std::vector<Hit> ours = answers(kerf, all, Feed::loop), theirs = answers(robust, all, Feed::loop);
+    BenchVerdicts verdicts;
+    for (size_t i = 0; i < ours.size(); ++i) {
+      const auto verdict = judge(input_.description.objects, rays.rays[i], ours[i], theirs[i]);
+      ++(verdict ? verdicts.counts[static_cast<size_t>(*verdict)] : verdicts.not_judged);
+    }
+    return verdicts;
   }
 
   /// One run of everything that is to be timed, for its hits; it warms up what is warmed up by tracing.
   void compare_rows() {
     if (is_stopped_) return;
-    const auto robust = answers_of([](const BenchRow& row) { return row.quality == "robust"; });
-    const auto first = answers_of([](const BenchRow& row) { return row.engine == BenchEngine::kerf; });
+    const auto robust =
+        find([](const BenchRow& row) { return row.engine == BenchEngine::embree && row.quality == "robust"; });
+    const auto first = find([](const BenchRow& row) { return row.engine == BenchEngine::kerf; });
+    std::vector<std::vector<Hit>> of_robust, of_first;
+    for (size_t kind = 0; kind < rays_.size(); ++kind) {
+      if (robust) of_robust.push_back(answers(*robust, rays_of(kind), Feed::loop));
+      if (first) of_first.push_back(answers(*first, rays_of(kind), Feed::loop));
+      if (robust && first) result_.verdicts.push_back(judge_kind(*first, *robust, kind));
+    }
     for (size_t i = 0; i < subjects_.size() && tell("compare", result_.rows[i]); ++i) {
       for (size_t kind = 0; kind < rays_.size() && is_there(i); ++kind) {
         for (const Feed feed : subjects_[i]->feeds()) {
-          const std::vector<Hit> hits = answers(i, kind, feed);
+          const std::vector<Hit> hits = answers(i, rays_of(kind), feed);
           BenchRun run{kind, feed, {}, {}, {}, {}};
           for (const Hit& hit : hits) run.hits += hit ? 1 : 0;
-          if (!robust.empty()) run.unlike_robust = count_unlike(hits, robust[kind], is_same_answer);
+          if (robust) run.unlike_robust = count_unlike(hits, of_robust[kind], is_same_answer);
           if (result_.rows[i].engine == BenchEngine::kerf) {
-            run.unlike_kerf = count_unlike(hits, first[kind], std::equal_to<>());
+            run.unlike_kerf = count_unlike(hits, of_first[kind], std::equal_to<>());
           }
           result_.rows[i].runs.push_back(std::move(run));
         }

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "kerf/study/hit_verdict.h"
 
 namespace kerf {
 
@@ -58,6 +61,12 @@ struct BenchRow {
   const BenchRun* run(size_t kind, Feed feed) const;
 };
 
+/// What Kerf finds beside Embree's robust scene with one kind of rays, all traced to their closest hit.
+struct BenchVerdicts {
+  std::array<size_t, kVerdicts> counts{};  ///< by Verdict
+  size_t not_judged = 0;                   ///< answers that differ about something that is no triangle
+};
+
 /// A scene as it stands, or turned, with one number of threads.
 struct BenchScene {
   std::string name, turn;  ///< turn: "straight" or another of turn_names()
@@ -68,6 +77,7 @@ struct BenchScene {
   std::vector<size_t> ray_counts;  ///< of each kind
   std::string rival;               ///< what Embree runs with, in lines; empty without it
   std::vector<BenchRow> rows;
+  std::vector<BenchVerdicts> verdicts;  ///< of each kind of rays, of Kerf's first row; none without Embree
 
   std::string title() const { return turn == "straight" ? name : name + " turned " + turn; }
   /// Embree's row of that quality; nothing where it did not finish.

@@ -93,6 +93,21 @@ std::string row_lines(const BenchScene& scene, const BenchRow& row, size_t width
   return text;
 }
 
+/// What Kerf finds beside Embree's robust scene, kind by kind.
+std::string verdict_lines(const BenchScene& scene) {
+  std::string text;
+  for (size_t kind = 0; kind < scene.verdicts.size(); ++kind) {
+    const BenchVerdicts& verdicts = scene.verdicts[kind];
+    text += fmt::format("  {}: ", scene.kinds[kind]);
+    for (int v = 0; v < kVerdicts; ++v) {
+      text += fmt::format("{}{} {}", v > 0 ? ", " : "", verdicts.counts[static_cast<size_t>(v)],
+                          verdict_name(static_cast<Verdict>(v)));
+    }
+    text += verdicts.not_judged > 0 ? fmt::format(", {} not judged\n", verdicts.not_judged) : "\n";
+  }
+  return text.empty() ? "" : "closest hits beside Embree ROBUST, judged in extended precision:\n" + text;
+}
+
 std::string builders(const BenchScene& scene) {
   std::string text;
   for (const BenchRow& row : scene.rows) {
@@ -140,7 +155,7 @@ std::string bench_text(std::span<const BenchScene> scenes) {
   for (const BenchScene& scene : scenes) {
     text += heading(scene, width);
     for (const BenchRow& row : scene.rows) text += row_lines(scene, row, width);
-    text += "built by:\n" + builders(scene) + "\n";
+    text += verdict_lines(scene) + "built by:\n" + builders(scene) + "\n";
   }
   if (scenes[0].rival.empty()) return text;
   const std::vector<BenchScene> alike = with_threads_of_first(scenes);
