@@ -10,13 +10,12 @@
 #include "apps/kerf/study_output.h"
 #include "kerf/base/error.h"
 #include "kerf/base/nearest_word.h"
+#include "kerf/base/parallel.h"
 #include "kerf/study/bench_tables.h"
 #include "kerf/study/embree_builder.h"
 
 namespace kerf::app {
 namespace {
-
-constexpr int kMostThreads = 4096;
 
 /// The sizes of a family's models: each ten times the one before.
 std::vector<uint64_t> growth_sizes(double up_to) {
@@ -28,14 +27,16 @@ std::vector<uint64_t> growth_sizes(double up_to) {
 }  // namespace
 
 std::vector<int> parse_threads(const std::string& text) {
+  const int most = thread_count();
   std::vector<int> counts;
   for (const std::string& word : words_of(text)) {
     int count = -1;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
-    if (error != std::errc() || end != word.data() + word.size() || count < 0 || count > kMostThreads) {
+    if (error != std::errc() || end != word.data() + word.size() || count < 0 || count > most) {
       throw Error(ErrorCode::invalid_option, "--threads",
-                  fmt::format("'{}' is not a number of threads from 0 (all) to {}", word, kMostThreads));
+                  fmt::format("'{}' is not a number of threads that this machine has: 0 (all) to {}", word, most));
     }
+    if (count == 0) count = most;
     if (std::find(counts.begin(), counts.end(), count) == counts.end()) counts.push_back(count);
   }
   return counts;

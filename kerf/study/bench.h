@@ -11,7 +11,7 @@
 
 namespace kerf {
 
-/// `threads` build and trace.
+/// `threads` build and trace; not more than the machine has, for Embree takes no more.
 struct BenchOptions : MeasureOptions {
   std::vector<std::string> rows;  ///< pipelines; all are checked before any work is done
   bool with_embree = true;        ///< where this build knows it

@@ -32,18 +32,22 @@ constexpr const char* kOptions = "hugepages=1,start_threads=1";
 
 [[noreturn]] void refuse(const std::string& sentence) { throw Error(ErrorCode::invalid_option, "embree", sentence); }
 
-/// What Embree writes to std::cout while one lives.
+/// What Embree writes to std::cout while one lives; what it writes to std::cerr is lost, for its error codes say it
+/// too.
 class CapturedOutput {
  public:
-  CapturedOutput() : before_(std::cout.rdbuf(text_.rdbuf())) {}
-  ~CapturedOutput() { std::cout.rdbuf(before_); }
+  CapturedOutput() : output_(std::cout.rdbuf(text_.rdbuf())), errors_(std::cerr.rdbuf(lost_.rdbuf())) {}
+  ~CapturedOutput() {
+    std::cout.rdbuf(output_);
+    std::cerr.rdbuf(errors_);
+  }
   CapturedOutput(const CapturedOutput&) = delete;
   CapturedOutput& operator=(const CapturedOutput&) = delete;
   std::string text() const { return text_.str(); }
 
  private:
-  std::ostringstream text_;
-  std::streambuf* before_;
+  std::ostringstream text_, lost_;
+  std::streambuf *output_, *errors_;
 };
 
 /// A device, and the memory that it holds.
