@@ -15,9 +15,12 @@ std::string_view layout_of(const Pipeline& pipeline) {
   return last.kind == "layout" || last.kind == "structure" ? last.name : layouts().front().name;
 }
 
-/// Of the kernels that trace a layout. Only brute force has any but scalar ones so far.
+/// Of the kernels that trace a layout. The best of this machine where there are vectors in them.
 std::string_view isa_of(std::string_view layout) {
-  return layout == "brute_force" ? triangle_kernels().instruction_set : "scalar";
+  for (const std::string_view vectored : {"brute_force", "bvh4", "bvh8"}) {
+    if (layout.starts_with(vectored)) return triangle_kernels().instruction_set;
+  }
+  return "scalar";
 }
 
 /// The preset that the text begins with, else the pipeline without its layout.
