@@ -323,19 +323,18 @@ class Judge {
     return all_of(kinds);
   }
 
+  Finding threads_build(const char* preset, std::string_view quality) const {
+    const std::string name = best_row(alone_, preset, Feed::loop);
+    std::vector<double> values;
+    with_pairs([&](const BenchScene& one, const BenchScene& two) {
+      const double gain = build_seconds(one.row(name)) / build_seconds(two.row(name));
+      const double other = build_seconds(one.embree(quality)) / build_seconds(two.embree(quality));
+      if (!std::isnan(gain / other)) values.push_back(gain / other);
+    });
+    return gains(values, preset);
+  }
   Finding threads_builds() const {
-    std::vector<Finding> both;
-    for (const auto& [preset, quality] : {std::pair{"balanced", "medium"}, std::pair{"best", "high"}}) {
-      const std::string name = best_row(alone_, preset, Feed::loop);
-      std::vector<double> values;
-      with_pairs([&](const BenchScene& one, const BenchScene& two) {
-        const double gain = build_seconds(one.row(name)) / build_seconds(two.row(name));
-        const double other = build_seconds(one.embree(quality)) / build_seconds(two.embree(quality));
-        if (!std::isnan(gain / other)) values.push_back(gain / other);
-      });
-      both.push_back(gains(values, preset));
-    }
-    return all_of(both);
+    return all_of({threads_build("balanced", "medium"), threads_build("best", "high")});
   }
 
   /// From the smallest to the largest model of each family, all kinds together.

@@ -25,7 +25,7 @@ std::string_view isa_of(std::string_view layout) {
 
 /// The preset that the text begins with, else the pipeline without its layout.
 std::string quality_of(const std::string& text, const Pipeline& pipeline) {
-  const std::string first = text.substr(0, text.find('+'));
+  std::string first = text.substr(0, text.find('+'));
   for (const PresetEntry& preset : presets()) {
     if (preset.name == first) return first;
   }
