@@ -192,7 +192,7 @@ TEST(RayOrder, PutsWhatGoesAlikeTogether) {
   std::vector<Ray> rays;
   for (int i = 0; i < 64; ++i) {
     Ray ray;
-    ray.origin = {static_cast<float>(i % 2) * 100, static_cast<float>(i / 32), 0};
+    ray.origin = {static_cast<float>(i % 2) * 100, i < 32 ? 0.0F : 1.0F, 0};
     ray.direction = {i % 4 < 2 ? 1.0F : -1.0F, 0.5F, 0.25F};
     rays.push_back(ray);
   }
