@@ -45,6 +45,17 @@ Json head_json(const BenchScene& scene, const BenchRow& row, size_t kind, Feed f
           {"finished", row.finished}};
 }
 
+/// Of a row of Kerf's whose hits are those that were judged.
+Json verdicts_json(const BenchScene& scene, const BenchRun& run) {
+  if (run.kind >= scene.verdicts.size() || run.unlike_kerf != size_t{0}) return {};
+  const BenchVerdicts& verdicts = scene.verdicts[run.kind];
+  Json one = {{"not judged", verdicts.not_judged}};
+  for (int v = 0; v < kVerdicts; ++v) {
+    one[verdict_name(static_cast<Verdict>(v))] = verdicts.counts[static_cast<size_t>(v)];
+  }
+  return one;
+}
+
 Json run_json(const BenchScene& scene, const BenchRow& row, const BenchRun& run) {
   const BenchRow* high = scene.embree("high");
   Json one = head_json(scene, row, run.kind, run.feed);
@@ -58,15 +69,18 @@ Json run_json(const BenchScene& scene, const BenchRow& row, const BenchRun& run)
               {"references", row.references ? Json(std::round(*row.references)) : Json()},
               {"hits", run.hits},
               {"unlike_robust", count_json(run.unlike_robust)},
-              {"unlike_kerf", count_json(run.unlike_kerf)}});
+              {"unlike_kerf", count_json(run.unlike_kerf)},
+              {"verdicts", verdicts_json(scene, run)},
+              {"settings", row.engine == BenchEngine::embree ? Json(scene.rival) : Json()}});
   return one;
 }
 
 Json unfinished_json(const BenchScene& scene, const BenchRow& row, size_t kind) {
   Json one = head_json(scene, row, kind, Feed::loop);
   one["why_not"] = row.why_not;
-  for (const char* key : {"mrays_per_second", "mrays_spread", "ratio_to_embree_high", "build_seconds",
-                          "build_seconds_spread", "bytes", "references", "hits", "unlike_robust", "unlike_kerf"}) {
+  for (const char* key :
+       {"mrays_per_second", "mrays_spread", "ratio_to_embree_high", "build_seconds", "build_seconds_spread", "bytes",
+        "references", "hits", "unlike_robust", "unlike_kerf", "verdicts", "settings"}) {
     one[key] = nullptr;
   }
   return one;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <new>
+#include <optional>
 
 #include "kerf/base/error.h"
 #include "kerf/base/parallel.h"
@@ -21,7 +22,8 @@ namespace {
 constexpr std::string_view kWideLayouts[] = {"bvh8", "bvh4"};
 constexpr int kLeastBuilds = 3;
 constexpr double kSecondsOfBuilding = 30;  // for more builds than that, of all rows together
-constexpr float kSameDistance = 1e-3F;     // Embree's is not exact
+constexpr const char* kTooLong = "tracing its rays took more than the time allowed";
+constexpr float kSameDistance = 1e-3F;  // Embree's is not exact
 
 bool is_same_answer(const Hit& a, const Hit& b) {
   if (!a || !b) return !a && !b;
@@ -90,9 +92,9 @@ class Bench {
     return !is_stopped_;
   }
 
-  /// Calls f(); gives the row up with a sentence where it reaches a limit.
+  /// Calls f(); gives the row up where it reaches a limit, with that sentence or the error's own.
   template <class F>
-  void within_limits(size_t i, F&& f) {
+  void within_limits(size_t i, const char* sentence, F&& f) {
     try {
       f();
     } catch (const Error& error) {
@@ -100,30 +102,32 @@ class Bench {
           error.code() != ErrorCode::invalid_option) {
         throw;
       }
-      give_up(i, error.what());
+      give_up(i, error.code() == ErrorCode::stopped && sentence != nullptr ? sentence : error.what());
     } catch (const std::bad_alloc&) {
       give_up(i, "there is not enough memory");
     }
   }
 
+  bool is_interrupted() const { return options_.cancelled != nullptr && *options_.cancelled; }
+
   void give_up(size_t i, const std::string& why) {
-    const bool is_interrupted = options_.cancelled != nullptr && *options_.cancelled;
     subjects_[i].reset();
-    if (is_interrupted && result_.rows[i].finished) return;  // what was measured stays
+    if (is_interrupted() && result_.rows[i].finished) return;  // what was measured stays
+    result_.rows[i].runs.clear();
     result_.rows[i].finished = false;
-    result_.rows[i].why_not = is_interrupted ? "it was interrupted" : why;
+    result_.rows[i].why_not = is_interrupted() ? "it was interrupted" : why;
   }
 
   bool is_there(size_t i) const { return subjects_[i] != nullptr && result_.rows[i].finished; }
 
   void build_rows() {
     for (size_t i = 0; i < subjects_.size() && tell("build", result_.rows[i]); ++i) {
-      within_limits(i, [&] { result_.rows[i] = subjects_[i]->build(measure_.limit()); });
+      within_limits(i, nullptr, [&] { result_.rows[i] = subjects_[i]->build(measure_.limit()); });
       done_ += 1;
     }
   }
 
-  RaysToTrace rays_of(size_t kind) const { return {rays_[kind], orders_[kind], options_.threads}; }
+  RaysToTrace rays_of(size_t kind) const { return {rays_[kind], orders_[kind], options_.threads, measure_.limit()}; }
 
   std::vector<Hit> answers(size_t i, const RaysToTrace& rays, Feed feed) const {
     const std::unique_ptr<BenchPass> pass = subjects_[i]->prepare(rays, feed);
@@ -143,7 +147,7 @@ class Bench {
   BenchVerdicts judge_kind(size_t kerf, size_t robust, size_t kind) const {
     StudyRays rays = rays_[kind];
     rays.any_hit = false;
-    const RaysToTrace all{rays, orders_[kind], options_.threads};
+    const RaysToTrace all{rays, orders_[kind], options_.threads, measure_.limit()};
     const std::vector<Hit> ours = answers(kerf, all, Feed::loop), theirs = answers(robust, all, Feed::loop);
     BenchVerdicts verdicts;
     for (size_t i = 0; i < ours.size(); ++i) {
@@ -153,32 +157,49 @@ class Bench {
     return verdicts;
   }
 
+  /// The answers of a row that others are compared with; none of a kind on which it was given up.
+  std::vector<std::vector<Hit>> all_answers(std::optional<size_t> i) {
+    std::vector<std::vector<Hit>> all;
+    for (size_t kind = 0; kind < rays_.size() && i && is_there(*i); ++kind) {
+      within_limits(*i, kTooLong, [&] { all.push_back(answers(*i, rays_of(kind), Feed::loop)); });
+    }
+    return all;
+  }
+
   /// One run of everything that is to be timed, for its hits; it warms up what is warmed up by tracing.
   void compare_rows() {
     if (is_stopped_) return;
     const auto robust =
         find([](const BenchRow& row) { return row.engine == BenchEngine::embree && row.quality == "robust"; });
-    const auto first = find([](const BenchRow& row) { return row.engine == BenchEngine::kerf; });
-    std::vector<std::vector<Hit>> of_robust, of_first;
-    for (size_t kind = 0; kind < rays_.size(); ++kind) {
-      if (robust) of_robust.push_back(answers(*robust, rays_of(kind), Feed::loop));
-      if (first) of_first.push_back(answers(*first, rays_of(kind), Feed::loop));
-      if (robust && first) result_.verdicts.push_back(judge_kind(*first, *robust, kind));
+    const auto of_robust = all_answers(robust);
+    std::vector<std::vector<Hit>> of_first;
+    while (of_first.size() < rays_.size()) {  // a row that is given up makes room for the next one
+      const auto first = find([](const BenchRow& row) { return row.engine == BenchEngine::kerf; });
+      if (!first || is_interrupted()) break;
+      of_first = all_answers(first);
+      for (size_t kind = 0; kind < rays_.size() && is_there(*first) && robust && is_there(*robust); ++kind) {
+        within_limits(*robust, kTooLong, [&] { result_.verdicts.push_back(judge_kind(*first, *robust, kind)); });
+      }
     }
     for (size_t i = 0; i < subjects_.size() && tell("compare", result_.rows[i]); ++i) {
-      for (size_t kind = 0; kind < rays_.size() && is_there(i); ++kind) {
-        for (const Feed feed : subjects_[i]->feeds()) {
-          const std::vector<Hit> hits = answers(i, rays_of(kind), feed);
-          BenchRun run{kind, feed, {}, {}, {}, {}};
-          for (const Hit& hit : hits) run.hits += hit ? 1 : 0;
-          if (robust) run.unlike_robust = count_unlike(hits, of_robust[kind], is_same_answer);
-          if (result_.rows[i].engine == BenchEngine::kerf) {
-            run.unlike_kerf = count_unlike(hits, of_first[kind], std::equal_to<>());
-          }
-          result_.rows[i].runs.push_back(std::move(run));
-        }
-      }
+      if (is_there(i)) within_limits(i, kTooLong, [&] { compare(i, of_robust, of_first); });
       done_ += 1;
+    }
+  }
+
+  void compare(size_t i, const std::vector<std::vector<Hit>>& of_robust,
+               const std::vector<std::vector<Hit>>& of_first) {
+    BenchRow& row = result_.rows[i];
+    for (size_t kind = 0; kind < rays_.size(); ++kind) {
+      for (const Feed feed : subjects_[i]->feeds()) {
+        const std::vector<Hit> hits = answers(i, rays_of(kind), feed);
+        BenchRun run{kind, feed, {}, {}, {}, {}};
+        for (const Hit& hit : hits) run.hits += hit ? 1 : 0;
+        if (kind < of_robust.size()) run.unlike_robust = count_unlike(hits, of_robust[kind], is_same_answer);
+        if (row.engine == BenchEngine::kerf && kind < of_first.size())
+          run.unlike_kerf = count_unlike(hits, of_first[kind], std::equal_to<>());
+        row.runs.push_back(std::move(run));
+      }
     }
   }
 
@@ -204,18 +225,20 @@ class Bench {
   void time_kind(const std::vector<size_t>& turns, size_t kind) {
     for (const size_t i : turns) {
       if (!is_there(i) || !tell("trace", result_.rows[i])) continue;
-      for (BenchRun& run : result_.rows[i].runs) {
-        if (run.kind != kind || is_stopped_) continue;
-        const std::unique_ptr<BenchPass> pass = subjects_[i]->prepare(rays_of(kind), run.feed);
-        const auto start = std::chrono::steady_clock::now();
-        pass->trace();
-        run.seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-        if (run.seconds.back() <= options_.limit_seconds) continue;
-        give_up(i, "tracing its rays took more than the time allowed");
-        break;
-      }
+      within_limits(i, kTooLong, [&] {
+        for (BenchRun& run : result_.rows[i].runs) {
+          if (run.kind == kind) time(i, run);
+        }
+      });
       done_ += 1.0 / static_cast<double>(rays_.size());
     }
+  }
+
+  void time(size_t i, BenchRun& run) const {
+    const std::unique_ptr<BenchPass> pass = subjects_[i]->prepare(rays_of(run.kind), run.feed);
+    const auto start = std::chrono::steady_clock::now();
+    pass->trace();
+    run.seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   }
 
   void build_again(size_t i) {

@@ -47,7 +47,7 @@ class KerfPass : public BenchPass {
                          : scene_.closest_hit(rays, std::span(hits_), rays_.threads);
       return;
     }
-    for_stretches(rays_.threads, rays.size(), 1, [&](size_t begin, size_t end) {
+    for_stretches(rays_, rays.size(), 1, [&](size_t begin, size_t end) {
       if (rays_.rays.any_hit) {
         for (size_t i = begin; i < end; ++i) any_[i] = static_cast<uint8_t>(scene_.any_hit(rays[i]));
       } else {

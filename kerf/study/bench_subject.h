@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -18,6 +19,7 @@ struct RaysToTrace {
   const StudyRays& rays;
   std::span<const uint32_t> order;  ///< see ray_order()
   int threads = 1;
+  WorkLimit limit = {};  ///< looked at before each stretch
 
   /// Rays of a picture's pixels go side by side.
   bool are_coherent() const { return rays.kind == "primary"; }
@@ -27,7 +29,7 @@ struct RaysToTrace {
 class BenchPass {
  public:
   virtual ~BenchPass() = default;
-  /// What is timed; once.
+  /// What is timed; once. Throws Error (stopped) where the limit of its rays is reached.
   virtual void trace() = 0;
   /// After that: what each ray hit, in the caller's order; of any-hit rays only whether.
   virtual std::vector<Hit> hits() const = 0;
@@ -51,12 +53,24 @@ class BenchSubject {
 /// Rays that a thread takes at once.
 inline constexpr size_t kStretch = 1024;
 
-/// Calls f(begin, end) on stretches of `count` things, `width` rays each, on so many threads; one thread: at one go, on
+/// Calls f(begin, end) on stretches of `count` things, `width` rays each, on as many threads as are asked for: one is
 /// the calling thread. The same loop for every engine.
 template <class F>
-void for_stretches(int threads, size_t count, size_t width, F&& f) {
-  if (threads == 1) return f(size_t{0}, count);
-  with_threads(threads, [&] { parallel_for(count, kStretch / width, f); });
+void for_stretches(const RaysToTrace& rays, size_t count, size_t width, F&& f) {
+  const size_t stretch = kStretch / width;
+  if (rays.threads == 1) {
+    for (size_t begin = 0; begin < count; begin += stretch) {
+      rays.limit.check();
+      f(begin, std::min(begin + stretch, count));
+    }
+    return;
+  }
+  with_threads(rays.threads, [&] {
+    parallel_for(count, stretch, [&](size_t begin, size_t end) {
+      rays.limit.check();
+      f(begin, end);
+    });
+  });
 }
 
 }  // namespace kerf

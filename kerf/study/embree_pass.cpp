@@ -69,10 +69,8 @@ class EmbreePass : public BenchPass {
  public:
   EmbreePass(RTCScene scene, const RaysToTrace& rays, bool is_stream)
       : scene_(scene),
-        threads_(rays.threads),
-        is_coherent_(rays.are_coherent()),
+        rays_(rays),
         is_stream_(is_stream),
-        order_(rays.order.begin(), rays.order.end()),
         count_(rays.rays.rays.size()),
         packets_((count_ + kWidth - 1) / kWidth) {
     for (size_t i = 0; i < packets_.size() * kWidth; ++i) {
@@ -81,9 +79,9 @@ class EmbreePass : public BenchPass {
   }
 
   void trace() override {
-    for_stretches(threads_, packets_.size(), kWidth, [&](size_t begin, size_t end) {
+    for_stretches(rays_, packets_.size(), kWidth, [&](size_t begin, size_t end) {
       const FlushedDenormals flushed;
-      EmbreeQueries queries(scene_, is_coherent_);
+      EmbreeQueries queries(scene_, rays_.are_coherent());
       if constexpr (kWidth == 1) {
         if (is_stream_) return queries.trace_stream(packets_.data() + begin, end - begin);
         for (size_t i = begin; i < end; ++i) queries.trace(packets_[i]);
@@ -107,12 +105,11 @@ class EmbreePass : public BenchPass {
 
  private:
   /// Of the ray at place i.
-  size_t number(size_t i) const { return order_.empty() ? i : order_[i]; }
+  size_t number(size_t i) const { return rays_.order.empty() ? i : rays_.order[i]; }
 
   RTCScene scene_;
-  int threads_;
-  bool is_coherent_, is_stream_;
-  std::vector<uint32_t> order_;  // empty: the caller's
+  RaysToTrace rays_;  // its order is empty for the caller's
+  bool is_stream_;
   size_t count_;
   std::vector<R> packets_;
 };
@@ -136,7 +133,8 @@ FlushedDenormals::~FlushedDenormals() = default;
 #endif
 
 std::unique_ptr<BenchPass> embree_pass(RTCScene scene, const RaysToTrace& rays, Feed feed) {
-  const RaysToTrace some{rays.rays, feed == Feed::loop ? std::span<const uint32_t>() : rays.order, rays.threads};
+  RaysToTrace some = rays;
+  if (feed == Feed::loop) some.order = {};
   if (feed == Feed::packets_8) return pass_of<RTCRayHit8, RTCRay8, 8>(scene, some, false);
   if (feed == Feed::packets_16) return pass_of<RTCRayHit16, RTCRay16, 16>(scene, some, false);
   return pass_of<RTCRayHit, RTCRay, 1>(scene, some, feed == Feed::stream);
