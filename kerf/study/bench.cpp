@@ -65,8 +65,13 @@ class Bench {
 
  private:
   void make_rays() {
-    rays_ = make_study_rays(input_.description, input_.camera, options_.width, options_.height, options_.kinds,
-                            options_.skip_invalid);
+    try {
+      rays_ = make_study_rays(input_.description, input_.camera, options_.width, options_.height, options_.kinds,
+                              options_.skip_invalid, measure_.cancellation());
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::stopped) throw;
+      is_stopped_ = true;
+    }
     for (const StudyRays& rays : rays_) {
       result_.kinds.push_back(rays.kind);
       result_.ray_counts.push_back(rays.rays.size());
@@ -76,7 +81,7 @@ class Bench {
 
   void add_embree() {
 #ifdef KERF_HAVE_EMBREE
-    if (!options_.with_embree) return;
+    if (!options_.with_embree || is_stopped_) return;
     EmbreeRival rival = embree_rival(input_.description, options_.threads);
     result_.rival = std::move(rival.settings);
     for (auto& subject : rival.subjects) subjects_.push_back(std::move(subject));
