@@ -11,10 +11,12 @@ function(kerf_install target set)
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   install(EXPORT ${set} NAMESPACE kerf:: DESTINATION ${KERF_CMAKE_DIR})
   foreach(folder ${ARGN})
-    # simd.h is for the library's own kernels: it needs Highway's headers, which users of Kerf need not have.
+    # simd.h is for the library's own kernels: it needs Highway's headers, which users of Kerf need not have; as the two
+    # about Embree need Embree's.
     # The folders within kerf/io are the insides of its readers, kerf/study/report those of the page.
     install(DIRECTORY kerf/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kerf FILES_MATCHING PATTERN "*.h"
-      PATTERN simd.h EXCLUDE REGEX "kerf/(io/[a-z]+|study/report)$" EXCLUDE)
+      PATTERN simd.h EXCLUDE PATTERN embree_calls.h EXCLUDE PATTERN embree_pass.h EXCLUDE
+      REGEX "kerf/(io/[a-z]+|study/report)$" EXCLUDE)
   endforeach()
 endfunction()
 

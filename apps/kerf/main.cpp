@@ -75,6 +75,7 @@ int run(int argc, char** argv) {
   add_inspect(app, command);
   add_list(app, command);
   add_study(app, command);
+  add_bench(app, command);
   add_make(app, command);
   add_convert(app, command);
   app.require_subcommand(0, 1);

@@ -55,6 +55,15 @@ std::vector<RayKind> parse_kinds(const std::string& text) {
   return kinds;
 }
 
+std::vector<std::string> parse_turns(const std::string& text) {
+  std::vector<std::string> turns;
+  for (const std::string& word : words_of(text)) {
+    turn_by_name(word);
+    if (std::find(turns.begin(), turns.end(), word) == turns.end()) turns.push_back(word);
+  }
+  return turns;
+}
+
 std::vector<std::string> rows_of(const std::string& text) {
   if (text.empty()) return {};
   std::vector<std::string> rows;

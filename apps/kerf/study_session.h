@@ -40,6 +40,9 @@ std::vector<std::string> rows_of(const std::string& text);
 /// Throws Error (invalid_option) with the nearest right word.
 std::vector<RayKind> parse_kinds(const std::string& text);
 
+/// Names of turns, each once. Throws Error (invalid_option) with the nearest right word.
+std::vector<std::string> parse_turns(const std::string& text);
+
 /// How much a row may take, as told.
 MeasureOptions measure_options(const StudyArguments& arguments);
 

@@ -9,23 +9,8 @@
 #include "kerf/base/error.h"
 #include "kerf/study/splitting_report.h"
 #include "kerf/study/splitting_tables.h"
-#include "kerf/study/turn.h"
 
 namespace kerf::app {
-namespace {
-
-/// Names of turns, each once.
-std::vector<std::string> parse_turns(const std::string& text) {
-  std::vector<std::string> turns;
-  for (const std::string& word : words_of(text)) {
-    turn_by_name(word);
-    if (std::find(turns.begin(), turns.end(), word) == turns.end()) turns.push_back(word);
-  }
-  return turns;
-}
-
-}  // namespace
-
 void check_splitting(const StudyArguments& a) {
   const auto refuse = [](const char* option, const char* sentence) {
     throw Error(ErrorCode::invalid_option, option, sentence);

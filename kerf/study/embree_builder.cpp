@@ -2,12 +2,6 @@
 
 #ifdef KERF_HAVE_EMBREE
 
-#if __has_include(<embree4/rtcore.h>)
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -19,6 +13,7 @@
 #include "kerf/base/error.h"
 #include "kerf/base/parallel.h"
 #include "kerf/scene/menu.h"
+#include "kerf/study/embree_calls.h"
 
 namespace kerf {
 namespace {

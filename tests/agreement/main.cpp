@@ -19,7 +19,7 @@
 #include "kerf/scene/pipeline.h"
 #include "kerf/scene/scene.h"
 #include "kerf/study/embree_builder.h"
-#include "tests/agreement/verdict.h"
+#include "kerf/study/hit_verdict.h"
 #include "tests/support/embree_scene.h"
 #include "tests/support/scenes.h"
 #include "tests/support/structures.h"
@@ -114,7 +114,7 @@ Tally compare(const Mesh& mesh, const Expected& expected, const std::string& str
     if (same_place) tally.depth_difference = std::max(tally.depth_difference, difference);
     if (difference > 1e-5) ++tally.deep;
     if (arguments.verbose && verdict != Verdict::same) {
-      fmt::print("  ray {}: {}: kerf {} at {:.9g}, oracle {} at {:.9g}\n", i, name(verdict),
+      fmt::print("  ray {}: {}: kerf {} at {:.9g}, oracle {} at {:.9g}\n", i, verdict_name(verdict),
                  static_cast<int64_t>(static_cast<int32_t>(hits[i].primitive)), hits[i].t,
                  static_cast<int64_t>(static_cast<int32_t>(expected.embree[i].primitive)), expected.embree[i].t);
     }

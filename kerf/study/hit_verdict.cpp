@@ -1,10 +1,11 @@
-#include "tests/agreement/verdict.h"
+#include "kerf/study/hit_verdict.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <variant>
 
-namespace kerf::test {
+namespace kerf {
 namespace {
 
 using Real = long double;
@@ -57,18 +58,13 @@ Verdict judge_depth(const Mesh& mesh, const Ray& ray, const Hit& kerf) {
   return is_right_about_hit(exact, kerf) ? Verdict::oracle_wrong : Verdict::unexplained;
 }
 
-}  // namespace
-
-const char* name(Verdict verdict) {
-  constexpr const char* kNames[] = {"same", "edge tie", "coincident", "oracle wrong", "unexplained"};
-  return kNames[static_cast<int>(verdict)];
-}
-
-Verdict judge(const Mesh& mesh, const Ray& ray, const Hit& kerf, const Hit& oracle, double& depth_difference) {
+/// `mesh`: of Kerf's hit; `other`: of the oracle's.
+Verdict judge_between(const Mesh& mesh, const Mesh& other, const Ray& ray, const Hit& kerf, const Hit& oracle,
+                      double& depth_difference) {
   depth_difference = 0;
   if (!kerf && !oracle) return Verdict::same;
   if (kerf && oracle) depth_difference = std::abs(double{kerf.t} - oracle.t) / std::abs(oracle.t);
-  if (kerf && oracle && kerf.primitive == oracle.primitive) {
+  if (kerf && oracle && kerf.primitive == oracle.primitive && &mesh == &other) {
     return depth_difference <= 1e-5 ? Verdict::same : judge_depth(mesh, ray, kerf);
   }
   Exact ours, theirs;
@@ -76,7 +72,7 @@ Verdict judge(const Mesh& mesh, const Ray& ray, const Hit& kerf, const Hit& orac
     ours = cross_exactly(mesh, kerf.primitive, ray);
     if (!is_right_about_hit(ours, kerf)) return Verdict::unexplained;
   }
-  if (oracle) theirs = cross_exactly(mesh, oracle.primitive, ray);
+  if (oracle) theirs = cross_exactly(other, oracle.primitive, ray);
   if (oracle && kerf && nearly(ours.t, theirs.t, 1e-6L)) {
     // The same distance: two surfaces in one place, or the edge between neighbours.
     const Real inside = std::min(ours.margin / ours.scale, theirs.margin / theirs.scale);
@@ -88,8 +84,34 @@ Verdict judge(const Mesh& mesh, const Ray& ray, const Hit& kerf, const Hit& orac
   const bool is_edge = std::abs(disputed.margin) <= kFloatRounding * disputed.scale;
   if (disputed_is_ours) return is_edge ? Verdict::edge_tie : Verdict::oracle_wrong;
   // The oracle's hit is nearer, so Kerf must be right that the ray misses that triangle.
+  if (theirs.t < ray.t_min || theirs.t > ray.t_max) return Verdict::oracle_wrong;  // as where a ray leaves a surface
   if (disputed.margin > kDoubleRounding * disputed.scale) return Verdict::unexplained;
   return is_edge ? Verdict::edge_tie : Verdict::oracle_wrong;
 }
 
-}  // namespace kerf::test
+}  // namespace
+
+const char* verdict_name(Verdict verdict) {
+  constexpr const char* kNames[] = {"same", "edge tie", "coincident", "oracle wrong", "unexplained"};
+  return kNames[static_cast<int>(verdict)];
+}
+
+Verdict judge(const Mesh& mesh, const Ray& ray, const Hit& kerf, const Hit& oracle, double& depth_difference) {
+  return judge_between(mesh, mesh, ray, kerf, oracle, depth_difference);
+}
+
+std::optional<Verdict> judge(std::span<const SceneObject> objects, const Ray& ray, const Hit& kerf, const Hit& oracle) {
+  if (!kerf && !oracle) return Verdict::same;
+  const auto mesh_of = [&](const Hit& hit) { return hit ? std::get_if<Mesh>(&objects[hit.geometry].shape) : nullptr; };
+  const Mesh *mesh = mesh_of(kerf), *other = mesh_of(oracle);
+  if ((kerf && mesh == nullptr) || (oracle && other == nullptr)) {
+    const bool is_same = kerf && oracle && kerf.primitive == oracle.primitive && kerf.geometry == oracle.geometry &&
+                         nearly(kerf.t, oracle.t, 1e-5L);
+    return is_same ? std::optional(Verdict::same) : std::nullopt;
+  }
+  double difference = 0;
+  return judge_between(mesh != nullptr ? *mesh : *other, other != nullptr ? *other : *mesh, ray, kerf, oracle,
+                       difference);
+}
+
+}  // namespace kerf

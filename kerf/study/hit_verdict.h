@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 
 #include "kerf/geometry/hit.h"
 #include "kerf/geometry/ray.h"
 #include "kerf/io/mesh.h"
+#include "kerf/io/scene_description.h"
 
-namespace kerf::test {
+namespace kerf {
 
 /// How Kerf's and the oracle's answer for one ray compare.
 enum class Verdict {
@@ -17,9 +20,13 @@ enum class Verdict {
   unexplained,   ///< anything else
 };
 inline constexpr int kVerdicts = 5;
-const char* name(Verdict verdict);
+const char* verdict_name(Verdict verdict);  ///< in words, such as "edge tie"
 
 /// Judges one ray, in extended precision where the answers differ. `depth_difference` is |t - t'| / t' where both hit.
 Verdict judge(const Mesh& mesh, const Ray& ray, const Hit& kerf, const Hit& oracle, double& depth_difference);
 
-}  // namespace kerf::test
+/// The same for a scene of several objects, where a geometry is its number; nothing where the answers differ about
+/// something that is no triangle.
+std::optional<Verdict> judge(std::span<const SceneObject> objects, const Ray& ray, const Hit& kerf, const Hit& oracle);
+
+}  // namespace kerf
