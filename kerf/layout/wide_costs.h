@@ -6,7 +6,7 @@ namespace kerf {
 struct WideCosts {
   double node = 1;
   double leaf = 0.7;       ///< of triangles
-  double triangle = 0.1;   ///< more for each of them
+  double triangle = 0.03;  ///< more for each of them
   double primitive = 0.8;  ///< for each primitive of a leaf of any
 };
 

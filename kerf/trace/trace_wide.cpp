@@ -32,11 +32,13 @@ struct BoxTests {
   using V = hn::Vec<Lanes>;
 
   V inverse_x, inverse_y, inverse_z;
-  V near_x, near_y, near_z, far_x, far_y, far_z;  ///< fused: what is added to the product; else the moved origin
+  V near_x, near_y, near_z, far_x, far_y,
+      far_z;  ///< fused: what is added to the product; else the moved origin
   V t_min;
-  uint32_t row_x, row_y, row_z;  ///< where a node's near sides begin; the far ones begin at that ^ kWidth
+  uint32_t row_x, row_y, row_z;  ///< where a node's near sides begin; the far
+                                 ///< ones begin at that ^ kWidth
 
-  BoxTests(const WideRay& ray, float first)
+  explicit BoxTests(const WideRay& ray)
       : inverse_x(all(ray.inverse[0])),
         inverse_y(all(ray.inverse[1])),
         inverse_z(all(ray.inverse[2])),
@@ -46,7 +48,7 @@ struct BoxTests {
         far_x(all(kFused ? ray.far_offset[0] : ray.origin_far[0])),
         far_y(all(kFused ? ray.far_offset[1] : ray.origin_far[1])),
         far_z(all(kFused ? ray.far_offset[2] : ray.origin_far[2])),
-        t_min(all(first)),
+        t_min(all(ray.t_min)),
         row_x(ray.near_upper[0] * kWidth),
         row_y((2 + ray.near_upper[1]) * kWidth),
         row_z((4 + ray.near_upper[2]) * kWidth) {}
@@ -82,50 +84,42 @@ struct LeafTests {
   using Lanes = hn::CappedTag<float, TriangleLeaf::kMost>;
   using V = hn::Vec<Lanes>;
 
-  V origin_x, origin_y, origin_z, shear_x, shear_y, direction_sign;
+  V origin_x, origin_y, origin_z, shear_x, shear_y;
   uint32_t kx, ky, kz;
-  float t_min, depth_per_t;
 
-  explicit LeafTests(const PreparedRay& ray)
-      : origin_x(hn::Set(Lanes(), (&ray.origin.x)[ray.kx])),
-        origin_y(hn::Set(Lanes(), (&ray.origin.x)[ray.ky])),
-        origin_z(hn::Set(Lanes(), (&ray.origin.x)[ray.kz])),
-        shear_x(hn::Set(Lanes(), ray.shear_x)),
-        shear_y(hn::Set(Lanes(), ray.shear_y)),
-        direction_sign(hn::Set(Lanes(), ray.direction_d[ray.kz] < 0 ? -0.0F : 0.0F)),
+  explicit LeafTests(const WideRay& ray)
+      : origin_x(hn::Set(Lanes(), ray.origin[ray.kx])),
+        origin_y(hn::Set(Lanes(), ray.origin[ray.ky])),
+        origin_z(hn::Set(Lanes(), ray.origin[ray.kz])),
+        shear_x(hn::Set(Lanes(), ray.shear[ray.kx])),
+        shear_y(hn::Set(Lanes(), ray.shear[ray.ky])),
         kx(ray.kx),
         ky(ray.ky),
-        kz(ray.kz),
-        t_min(ray.t_min),
-        depth_per_t(std::abs(static_cast<float>(ray.direction_d[ray.kz]))) {}
+        kz(ray.kz) {}
 
-  /// The triangles that the ray may hit, as bits. One bound on the error for all: the ray enters the leaf's box, at
-  /// `entry` at the earliest, so each corner is within the extent of the box around all triangles of a point of the ray
-  /// along each axis, and within twice that in the sheared space.
-  HWY_INLINE uint32_t may_hit(const TriangleLeaf& leaf, float limit) const {
+  /// The triangles that the ray may hit, as bits. One bound on the error for
+  /// all: the ray enters the leaf's box, at `entry` at the earliest, so each
+  /// corner is within the extent of the box around all triangles of a point of
+  /// the ray along each axis, and within twice that in the sheared space.
+  HWY_INLINE uint32_t may_hit(const TriangleLeaf& leaf) const {
     const Lanes d;
-    const Bounds bounds{t_min * depth_per_t, limit * depth_per_t};
     const float* const xs = leaf.column(0, 0) + size_t{kx} * leaf.count;
     const float* const ys = leaf.column(0, 0) + size_t{ky} * leaf.count;
     const float* const zs = leaf.column(0, 0) + size_t{kz} * leaf.count;
     const size_t next = size_t{3} * leaf.count;
     if constexpr (hn::MaxLanes(d) == TriangleLeaf::kMost) {
-      return some(xs, ys, zs, next, bounds) & ((1U << leaf.count) - 1);
+      return some(xs, ys, zs, next) & ((1U << leaf.count) - 1);
     } else {
       uint32_t found = 0;
       for (uint32_t i = 0; i < leaf.count; i += hn::MaxLanes(d)) {
-        found |= some(xs + i, ys + i, zs + i, next, bounds) << i;
+        found |= some(xs + i, ys + i, zs + i, next) << i;
       }
       return found & ((1U << leaf.count) - 1);
     }
   }
 
  private:
-  struct Bounds {
-    float first, last;  ///< depths of interest
-  };
-
-  HWY_INLINE uint32_t some(const float* xs, const float* ys, const float* zs, size_t next, const Bounds& bounds) const {
+  HWY_INLINE uint32_t some(const float* xs, const float* ys, const float* zs, size_t next) const {
     const Lanes d;
     const auto az = hn::Sub(hn::LoadU(d, zs), origin_z);
     const auto bz = hn::Sub(hn::LoadU(d, zs + next), origin_z);
@@ -145,30 +139,71 @@ struct LeafTests {
     const auto depth = hn::Max(hn::Max(hn::Abs(az), hn::Abs(bz)), hn::Abs(cz));
     const auto error = hn::MulAdd(hn::Mul(hn::Set(d, 0x1p-19F), s), hn::Add(s, depth), hn::Set(d, 0x1p-120F));
     const auto low = hn::Min(hn::Min(u, v), w), high = hn::Max(hn::Max(u, v), w);
-    // What is not a number counts for neither: Min and Max return one of their operands.
+    // What is not a number counts for neither: Min and Max return one of their
+    // operands.
     const auto outside = hn::And(hn::Lt(low, hn::Neg(error)), hn::Gt(high, error));
-    if (hn::AllTrue(d, outside)) return 0;
-    // The depth is sum / area, of the ray's sign; what is farther or nearer by more than any error is left out.
-    const auto area = hn::Add(hn::Add(u, v), w);
-    const auto sum = hn::MulAdd(w, cz, hn::MulAdd(v, bz, hn::Mul(u, az)));
-    const auto size = hn::Abs(area);
-    const auto sign = hn::Xor(hn::And(area, hn::Set(d, -0.0F)), direction_sign);
-    const auto signed_sum = hn::Xor(sum, sign);
-    const auto share = hn::MulAdd(hn::Set(d, 0x1p-19F), size, hn::Mul(hn::Set(d, 8), error));
-    const auto first = hn::Set(d, bounds.first), last = hn::Set(d, bounds.last);
-    const auto from_last = hn::NegMulAdd(last, size, signed_sum), from_first = hn::NegMulAdd(first, size, signed_sum);
-    const auto is_behind = hn::Gt(from_last, hn::Mul(share, hn::Add(depth, hn::Abs(last))));
-    const auto is_before = hn::Lt(from_first, hn::Neg(hn::Mul(share, hn::Add(depth, hn::Abs(first)))));
-    return bits_of(d, hn::Or(outside, hn::Or(is_behind, is_before))) ^ ((1U << hn::MaxLanes(d)) - 1);
+    return bits_of(d, outside) ^ ((1U << hn::MaxLanes(d)) - 1);
   }
+};
+
+/// intersect() of triangles that a ray may hit, the three corners side by side;
+/// the same operations, so the same bits. Four doubles as a language extension,
+/// which every target has in some form.
+class ExactTest {
+ public:
+  explicit ExactTest(const Ray& ray, const WideRay& wide)
+      : z_(static_cast<double>(wide.direction_z)),
+        shear_x_(static_cast<double>(ray.direction[wide.kx] + 0.0F) / z_),
+        shear_y_(static_cast<double>(ray.direction[wide.ky] + 0.0F) / z_) {
+    origin_x_ = wide.origin[wide.kx];
+    origin_y_ = wide.origin[wide.ky];
+    origin_z_ = wide.origin[wide.kz];
+  }
+
+  HWY_INLINE bool hits(const TriangleLeaf& leaf, uint32_t i, const WideRay& ray, float limit,
+                       Crossing& crossing) const {
+    Corners x, y, z;
+    load(leaf, ray.kx, i, x);
+    load(leaf, ray.ky, i, y);
+    load(leaf, ray.kz, i, z);
+    z -= origin_z_;
+    x = x - origin_x_ - shear_x_ * z;
+    y = y - origin_y_ - shear_y_ * z;
+    using Order [[gnu::vector_size(32)]] = int64_t;
+    const Order cab{2, 0, 1, 3}, bca{1, 2, 0, 3};
+    const Corners edges =
+        __builtin_shuffle(x, cab) * __builtin_shuffle(y, bca) - __builtin_shuffle(y, cab) * __builtin_shuffle(x, bca);
+    const double u = edges[0], v = edges[1], w = edges[2];
+    if (std::min(std::min(u, v), w) < 0 && std::max(std::max(u, v), w) > 0) return false;
+    const double area = u + v + w;
+    if (area == 0) return false;
+    const Corners depths = edges * z;
+    const double t = (depths[0] + depths[1] + depths[2]) / (area * z_);
+    crossing.t = without_minus_zero(static_cast<float>(t));
+    if (!(crossing.t >= ray.t_min && crossing.t <= limit && std::isfinite(crossing.t))) return false;
+    crossing.u = without_minus_zero(static_cast<float>(v / area));
+    crossing.v = without_minus_zero(static_cast<float>(w / area));
+    return true;
+  }
+
+ private:
+  using Corners [[gnu::vector_size(32)]] = double;
+
+  static HWY_INLINE void load(const TriangleLeaf& leaf, uint32_t axis, uint32_t i, Corners& to) {
+    const float* const first = leaf.column(0, axis) + i;
+    const size_t next = size_t{3} * leaf.count;
+    to = Corners{first[0], first[next], first[2 * next], 0};
+  }
+
+  double z_, shear_x_, shear_y_, origin_x_, origin_y_, origin_z_;
 };
 
 /// A ray on its way through a WideBvh.
 template <uint32_t kWidth, bool kFused, bool kAny, class Counts>
 class Walk {
  public:
-  Walk(const WideTracer<kWidth>& tracer, const PreparedRay& ray, const WideRay& wide, Hit& best, Counts& counts)
-      : tracer_(tracer), ray_(ray), best_(best), counts_(counts), boxes_(wide, ray.t_min), leaves_(ray) {}
+  Walk(const WideTracer<kWidth>& tracer, const Ray& ray, const WideRay& wide, Hit& best, Counts& counts)
+      : tracer_(tracer), ray_(ray), wide_(wide), best_(best), counts_(counts), boxes_(wide), leaves_(wide) {}
 
   HWY_INLINE void run() {
     constexpr uint32_t kMostWaiting = (kWidth - 1) * kMaxDepth;  // all children but one of each node above
@@ -188,6 +223,12 @@ class Walk {
           current = take(node, entry, entered);
           if (entered == 0) continue;
           const uint64_t next = take(node, entry, entered);
+          if constexpr (kAny) {
+            // The larger child first: it stands before the others.
+            for (; entered != 0; ++top) *top = take_last(node, entry, entered);
+            *top++ = next;
+            continue;
+          }
           if (entered == 0) {
             *top++ = std::max(current, next);
             current = std::min(current, next);
@@ -199,7 +240,7 @@ class Walk {
           do {
             *top++ = take(node, entry, entered);
           } while (entered != 0);
-          if constexpr (!kAny) sort(base, top);
+          sort(base, top);
           current = *--top;
           continue;
         }
@@ -214,7 +255,8 @@ class Walk {
   }
 
  private:
-  /// Nearer first as numbers, while entries are not negative; below that only the order suffers.
+  /// Nearer first as numbers, while entries are not negative; below that only
+  /// the order suffers.
   static HWY_INLINE uint64_t key(WideChild child, float entry) {
     return uint64_t{std::bit_cast<uint32_t>(entry)} << 32 | child.word;
   }
@@ -223,6 +265,12 @@ class Walk {
   static HWY_INLINE uint64_t take(const WideNode<kWidth>& node, const float* entry, uint32_t& entered) {
     const auto i = static_cast<uint32_t>(std::countr_zero(entered));
     entered &= entered - 1;
+    return key(node.child[i], entry[i]);
+  }
+
+  static HWY_INLINE uint64_t take_last(const WideNode<kWidth>& node, const float* entry, uint32_t& entered) {
+    const auto i = static_cast<uint32_t>(std::bit_width(entered) - 1);
+    entered ^= 1U << i;
     return key(node.child[i], entry[i]);
   }
 
@@ -243,15 +291,16 @@ class Walk {
     if constexpr (Counts::kCounts) {
       for (const LeafSlot& slot : tracer_.layout.slots(leaf)) counts_.count_primitives(std::span(&slot, 1));
     }
-    const uint32_t found = leaves_.may_hit(triangles, best_.t);
+    const uint32_t found = leaves_.may_hit(triangles);
     return found != 0 && test_triangles(triangles, found);
   }
 
   HWY_NOINLINE bool test_triangles(const TriangleLeaf& triangles, uint32_t found) {
+    const ExactTest exact(ray_, wide_);
     for (; found != 0; found &= found - 1) {
       const auto i = static_cast<uint32_t>(std::countr_zero(found));
       Crossing crossing;
-      if (!detail::intersect_exactly(ray_, triangles.triangle(i), best_.t, crossing)) continue;
+      if (!exact.hits(triangles, i, wide_, best_.t, crossing)) continue;
       const LeafSlot slot = triangles.slot(i);
       if ((tracer_.geometries[slot.geometry()].mask & ray_.mask) == 0) continue;
       const Hit hit{crossing.t, crossing.u, crossing.v, slot.primitive, slot.geometry(), kNone};
@@ -263,14 +312,16 @@ class Walk {
   }
 
   HWY_NOINLINE bool test_slots(WideChild leaf) {
+    const PreparedRay prepared(ray_);
     for (const LeafSlot& slot : tracer_.layout.slots(leaf)) {
-      if (test_primitive(tracer_.geometries, slot, ray_, best_, counts_) && kAny) return true;
+      if (test_primitive(tracer_.geometries, slot, prepared, best_, counts_) && kAny) return true;
     }
     return false;
   }
 
   const WideTracer<kWidth>& tracer_;
-  const PreparedRay& ray_;
+  const Ray& ray_;
+  const WideRay& wide_;
   Hit& best_;
   Counts& counts_;
   const BoxTests<kWidth, kFused> boxes_;
@@ -286,20 +337,20 @@ struct Kernel {
   template <bool kAny, class Counts>
   Hit trace(const Ray& ray, Counts& counts) const {
     const StandardFloat standard;
-    const PreparedRay prepared(ray);
-    if (!prepared.valid || tracer.layout.is_empty()) return {};
+    if (tracer.layout.is_empty()) return {};
     const Box3f& bounds = tracer.layout.bounds;
     const Float4 lower{bounds.lower.x, bounds.lower.y, bounds.lower.z, 0};
     const Float4 upper{bounds.upper.x, bounds.upper.y, bounds.upper.z, 0};
-    const WideRay wide(prepared, ray.direction, lower, upper);
+    const WideRay wide(ray, lower, upper);
+    if (!wide.valid) return {};
     Hit best;
-    best.t = prepared.t_max;
+    best.t = wide.t_max;
     counts.count_boxes(1);
-    if (!wide.enters(lower, upper, prepared.t_min, best.t)) return {};
+    if (!wide.enters(lower, upper)) return {};
     if (wide.is_fused) {
-      Walk<kWidth, true, kAny, Counts>(tracer, prepared, wide, best, counts).run();
+      Walk<kWidth, true, kAny, Counts>(tracer, ray, wide, best, counts).run();
     } else {
-      Walk<kWidth, false, kAny, Counts>(tracer, prepared, wide, best, counts).run();
+      Walk<kWidth, false, kAny, Counts>(tracer, ray, wide, best, counts).run();
     }
     return finished(best);
   }
