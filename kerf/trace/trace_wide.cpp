@@ -169,10 +169,9 @@ class ExactTest {
     z -= origin_z_;
     x = x - origin_x_ - shear_x_ * z;
     y = y - origin_y_ - shear_y_ * z;
-    using Order [[gnu::vector_size(32)]] = int64_t;
-    const Order cab{2, 0, 1, 3}, bca{1, 2, 0, 3};
-    const Corners edges =
-        __builtin_shuffle(x, cab) * __builtin_shuffle(y, bca) - __builtin_shuffle(y, cab) * __builtin_shuffle(x, bca);
+    const Corners x_cab = __builtin_shufflevector(x, x, 2, 0, 1, 3), y_cab = __builtin_shufflevector(y, y, 2, 0, 1, 3);
+    const Corners x_bca = __builtin_shufflevector(x, x, 1, 2, 0, 3), y_bca = __builtin_shufflevector(y, y, 1, 2, 0, 3);
+    const Corners edges = x_cab * y_bca - y_cab * x_bca;
     const double u = edges[0], v = edges[1], w = edges[2];
     if (std::min(std::min(u, v), w) < 0 && std::max(std::max(u, v), w) > 0) return false;
     const double area = u + v + w;
