@@ -317,16 +317,17 @@ class MeshScene {
   py::dict report() const {
     using namespace py::literals;
     const BuildReport& r = scene_.report();
-    return py::dict(
-        "structure"_a = r.structure, "primitives"_a = r.primitives, "invalid"_a = r.invalid,
-        "degenerate"_a = r.degenerate, "references"_a = r.references,
-        "references_per_primitive"_a = r.references_per_primitive, "sa_max"_a = r.sa_max, "capped"_a = r.capped,
-        "split_reason"_a = r.choice ? py::object(py::str(r.choice->reason)) : py::object(py::none()),
-        "bytes"_a = r.bytes, "peak_bytes"_a = r.peak_bytes, "nodes"_a = r.nodes, "leaves"_a = r.leaves,
-        "depth"_a = r.depth, "largest_leaf"_a = r.largest_leaf, "sah_cost"_a = r.sah_cost, "tree_hash"_a = r.tree_hash,
-        "seconds"_a =
-            py::dict("references"_a = r.seconds.references, "split"_a = r.seconds.split, "build"_a = r.seconds.build,
-                     "optimise"_a = r.seconds.optimise, "layout"_a = r.seconds.layout, "total"_a = r.seconds.total));
+    return py::dict("structure"_a = r.structure, "primitives"_a = r.primitives, "invalid"_a = r.invalid,
+                    "degenerate"_a = r.degenerate, "references"_a = r.references,
+                    "references_per_primitive"_a = r.references_per_primitive, "sa_max"_a = r.sa_max,
+                    "capped"_a = r.capped,
+                    "split_reason"_a = r.choice ? py::object(py::str(r.choice->reason)) : py::object(py::none()),
+                    "bytes"_a = r.bytes, "peak_bytes"_a = r.peak_bytes, "nodes"_a = r.nodes, "leaves"_a = r.leaves,
+                    "depth"_a = r.depth, "largest_leaf"_a = r.largest_leaf, "sah_cost"_a = r.sah_cost,
+                    "tree_hash"_a = r.tree_hash, "instruction_set"_a = r.instruction_set,
+                    "seconds"_a = py::dict("references"_a = r.seconds.references, "split"_a = r.seconds.split,
+                                           "build"_a = r.seconds.build, "optimise"_a = r.seconds.optimise,
+                                           "layout"_a = r.seconds.layout, "total"_a = r.seconds.total));
   }
 
  private:

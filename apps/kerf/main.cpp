@@ -1,6 +1,6 @@
 // The command line: one file per subcommand, no logic of its own.
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,12 +12,12 @@
 
 #include "apps/kerf/command.h"
 #include "kerf/base/error.h"
+#include "kerf/base/instruction_set.h"
 #include "kerf/base/nearest_word.h"
 #include "kerf/base/parallel.h"
 #include "kerf/base/version.h"
 #include "kerf/io/output_file.h"
 #include "kerf/study/embree_builder.h"
-#include "kerf/trace/triangle_filter.h"
 
 namespace kerf::app {
 namespace {
@@ -64,7 +64,7 @@ int run(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a reader that went away is an error of write(), not the end of the program
   CLI::App app("Finds what rays hit in scenes with large and long thin triangles.", "kerf");
   app.set_version_flag("--version", fmt::format("kerf {} (tasks: {}, SIMD: {})", kVersion, task_backend(),
-                                                triangle_kernels().instruction_set));
+                                                fmt::join(instruction_sets(), ", ")));
   app.allow_extras();  // to name the nearest word, which CLI11 does not
   app.footer("Example: kerf render room.yaml -o room.png --spp 256");
   add_embree_builders();

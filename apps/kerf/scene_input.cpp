@@ -174,6 +174,7 @@ Json report_json(const BuildReport& r) {
           {"largest_leaf", r.largest_leaf},
           {"sah_cost", r.sah_cost},
           {"tree_hash", fmt::format("{:016x}", r.tree_hash)},
+          {"instruction_set", r.instruction_set},
           {"seconds",
            {{"references", r.seconds.references},
             {"split", r.seconds.split},

@@ -9,6 +9,7 @@
 
 #include "kerf/base/error.h"
 #include "kerf/base/fp_environment.h"
+#include "kerf/base/instruction_set.h"
 #include "kerf/base/parallel.h"
 #include "kerf/references/box_around.h"
 #include "kerf/scene/pipeline.h"
@@ -239,6 +240,7 @@ void Scene::Built::describe() {
   report.largest_leaf = statistics.largest_leaf;
   report.sah_cost = statistics.cost;
   report.tree_hash = structure->hash();
+  report.instruction_set = structure->instruction_set();
 }
 
 Scene::Scene() : added_(std::make_unique<Added>()), table_(&kNotBuilt) {}
@@ -267,6 +269,7 @@ uint32_t Scene::add(Geometry geometry) {
 const BuildReport& Scene::build(const BuildOptions& options) {
   const Pipeline pipeline = parse_pipeline(options.structure);
   if (options.refittable) check_refits(pipeline);
+  chosen_instruction_set();  // throws where it is none, whatever the structure
   const size_t needed = memory_need(options).least;
   if (needed > options.limit.bytes) options.limit.check(needed);
   WorkMeter meter(options.progress);

@@ -52,10 +52,11 @@ struct BuildReport {
   size_t bytes = 0;                   ///< of what rays are traced through, without the caller's memory
   size_t peak_bytes = 0;              ///< the most that the build's large arrays took at once, the outcome's included
   size_t nodes = 0, leaves = 0;
-  uint32_t depth = 0;         ///< edges from the root to the deepest leaf
-  uint32_t largest_leaf = 0;  ///< slots
-  double sah_cost = 0;        ///< see Structure::cost()
-  uint64_t tree_hash = 0;     ///< equal for equal trees; 0 without a tree
+  uint32_t depth = 0;           ///< edges from the root to the deepest leaf
+  uint32_t largest_leaf = 0;    ///< slots
+  double sah_cost = 0;          ///< see Structure::cost()
+  uint64_t tree_hash = 0;       ///< equal for equal trees; 0 without a tree
+  std::string instruction_set;  ///< that queries run on, by its name in instruction_sets(): "scalar" without vectors
   struct Seconds {
     double references = 0, split = 0, build = 0, optimise = 0, layout = 0, total = 0;
   } seconds;
@@ -86,8 +87,9 @@ class Scene {
   uint32_t add(Strided<Parallelogram> shapes, uint32_t mask = 0xFFFFFFFFU) { return add(Geometry{shapes, mask}); }
 
   /// Makes what was added ready for queries; an empty scene hits nothing. Throws Error for a pipeline that is wrong
-  /// (invalid_option), a primitive that is (invalid_geometry, naming the first and how many) or a limit that was
-  /// reached or a progress() that returned false (stopped); the scene then answers as before.
+  /// or a KERF_ISA that this machine cannot run (invalid_option), a primitive that is wrong (invalid_geometry, naming
+  /// the first and how many) or a limit that was reached or a progress() that returned false (stopped); the scene then
+  /// answers as before.
   const BuildReport& build(const BuildOptions& options = {});
 
   /// Follows vertices that moved, without a new tree: boxes are made anew, what stands in which leaf stays. The tree

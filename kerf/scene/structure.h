@@ -43,6 +43,8 @@ class Structure {
   /// Its queries and what they work on; fetched once when a scene is built.
   virtual const TraceTable& table() const = 0;
   virtual const void* data() const = 0;
+  /// What its queries run on, by the name that instruction_sets() has for it.
+  virtual std::string_view instruction_set() const { return "scalar"; }
 
   /// Of what rays are traced through, without the caller's memory.
   virtual size_t bytes() const = 0;

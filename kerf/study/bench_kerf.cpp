@@ -4,7 +4,6 @@
 
 #include "kerf/render/render_scene.h"
 #include "kerf/scene/pipeline.h"
-#include "kerf/trace/triangle_filter.h"
 
 namespace kerf {
 namespace {
@@ -13,14 +12,6 @@ namespace {
 std::string_view layout_of(const Pipeline& pipeline) {
   const MenuEntry& last = *pipeline.stages.back().entry;
   return last.kind == "layout" || last.kind == "structure" ? last.name : layouts().front().name;
-}
-
-/// Of the kernels that trace a layout. The best of this machine where there are vectors in them.
-std::string_view isa_of(std::string_view layout) {
-  for (const std::string_view vectored : {"brute_force", "bvh4", "bvh8"}) {
-    if (layout.starts_with(vectored)) return triangle_kernels().instruction_set;
-  }
-  return "scalar";
 }
 
 /// The preset that the text begins with, else the pipeline without its layout.
@@ -77,7 +68,6 @@ class KerfSubject : public BenchSubject {
     const Pipeline parsed = parse_pipeline(pipeline);
     row_.quality = quality_of(pipeline, parsed);
     row_.layout = layout_of(parsed);
-    row_.isa = isa_of(row_.layout);
     row_.builder = parsed.text();
   }
 
@@ -90,6 +80,7 @@ class KerfSubject : public BenchSubject {
     row_.why_not.clear();
     row_.references = static_cast<double>(report.references);
     row_.bytes = report.bytes;
+    row_.isa = report.instruction_set;
     row_.builds = {report.seconds.total};
     return row_;
   }

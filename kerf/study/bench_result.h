@@ -44,7 +44,7 @@ struct BenchRow {
   BenchEngine engine = BenchEngine::kerf;
   std::string quality;  ///< a preset, or a pipeline without its layout; of Embree: "low", "medium", "high", "robust"
   std::string layout;   ///< of Embree: what it says that it built
-  std::string isa;      ///< the instruction set of the kernels, "scalar" for none
+  std::string isa;      ///< the instruction set of the kernels, "scalar" for none; empty until it is built
   std::string builder;  ///< the pipeline in its canonical spelling; of Embree: what it calls its builder
   bool finished = false;
   std::string why_not = "it was interrupted";

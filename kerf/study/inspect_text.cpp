@@ -244,6 +244,7 @@ void add_structure(Text& text, const Inspection& i) {
                   bytes_text(i.bytes.indices), bytes_text(i.bytes.shapes)));
   row("bytes of the structure",
       fmt::format("{} nodes and all else, {} slots", bytes_text(i.bytes.nodes), bytes_text(i.bytes.slots)));
+  row("instruction set", r.instruction_set);
   row("rays",
       fmt::format("{} primary, {} diffuse; {} hit", grouped(i.primary_rays), grouped(i.diffuse_rays), grouped(i.hits)));
   text.line("\nDepth of leaves");

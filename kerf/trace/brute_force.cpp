@@ -13,7 +13,7 @@ constexpr size_t kBlock = 1024;  // triangles filtered at a time
 }  // namespace
 
 BruteForce::BruteForce(std::span<const Geometry> geometries, std::span<const LeafSlot> slots)
-    : geometries_(geometries), filter_(triangle_kernels().filter) {
+    : geometries_(geometries), kernels_(triangle_kernels()) {
   triangles_.reserve(slots.size());
   for (const LeafSlot& slot : slots) {
     if (const auto* mesh = std::get_if<TriangleMesh>(&geometries[slot.geometry()].shapes)) {
@@ -37,7 +37,7 @@ Hit BruteForce::trace(const Ray& ray, Counts& counts) const {
   for (size_t begin = 0; begin < triangle_slots_.size(); begin += kBlock) {
     const size_t end = std::min(begin + kBlock, triangle_slots_.size());
     counts.count_primitives(std::span(triangle_slots_).subspan(begin, end - begin));
-    const size_t found = filter_(triangles_, prepared, begin, end, candidates);
+    const size_t found = kernels_.filter(triangles_, prepared, begin, end, candidates);
     for (size_t i = 0; i < found; ++i) {
       if (test_primitive(geometries_, triangle_slots_[candidates[i]], prepared, best) && kAny) return best;
     }

@@ -19,6 +19,9 @@ class BruteForce {
   /// How many primitives it tests.
   size_t size() const { return triangle_slots_.size() + other_slots_.size(); }
 
+  /// Of the kernel that passes triangles over.
+  std::string_view instruction_set() const { return kernels_.instruction_set; }
+
   size_t bytes() const { return triangles_.bytes() + size() * sizeof(LeafSlot); }
 
   template <bool kAny, class Counts>
@@ -28,7 +31,7 @@ class BruteForce {
   std::span<const Geometry> geometries_;
   TriangleColumns triangles_;
   std::vector<LeafSlot> triangle_slots_, other_slots_;
-  TriangleFilter filter_ = nullptr;
+  TriangleKernels kernels_{};
 };
 
 const TraceTable& brute_force_table();

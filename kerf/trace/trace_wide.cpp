@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "kerf/base/fp_environment.h"
+#include "kerf/base/instruction_set.h"
 #include "kerf/geometry/ray_triangle.h"
 #include "kerf/trace/leaf.h"
 #include "kerf/trace/wide_ray.h"
@@ -355,8 +356,8 @@ struct Kernel {
   }
 };
 
-WideKernels kernels4() { return {&kTraceTable<Kernel<4>>, hwy::TargetName(HWY_TARGET)}; }
-WideKernels kernels8() { return {&kTraceTable<Kernel<8>>, hwy::TargetName(HWY_TARGET)}; }
+const TraceTable* table4() { return &kTraceTable<Kernel<4>>; }
+const TraceTable* table8() { return &kTraceTable<Kernel<8>>; }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace kerf
@@ -365,16 +366,18 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace kerf {
 
-HWY_EXPORT(kernels4);
-HWY_EXPORT(kernels8);
+HWY_EXPORT(table4);
+HWY_EXPORT(table8);
 
 template <>
 WideKernels wide_kernels<4>() {
-  return HWY_DYNAMIC_DISPATCH(kernels4)();
+  const InstructionSet set = chosen_instruction_set();
+  return {KERF_DISPATCH(table4, set)(), set.name};
 }
 template <>
 WideKernels wide_kernels<8>() {
-  return HWY_DYNAMIC_DISPATCH(kernels8)();
+  const InstructionSet set = chosen_instruction_set();
+  return {KERF_DISPATCH(table8, set)(), set.name};
 }
 
 }  // namespace kerf

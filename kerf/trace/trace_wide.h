@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string_view>
 
 #include "kerf/layout/wide_bvh.h"
 #include "kerf/trace/trace_table.h"
@@ -16,12 +17,12 @@ struct WideTracer {
 
 /// What one instruction set offers.
 struct WideKernels {
-  const TraceTable* table;      ///< its data is a WideTracer
-  const char* instruction_set;  ///< as Highway calls it
+  const TraceTable* table;           ///< its data is a WideTracer
+  std::string_view instruction_set;  ///< its name
 };
 
-/// The kernels for the best instruction set of this machine; to be asked once, not for each ray. Hits are the same bits
-/// for all.
+/// The kernels for the chosen_instruction_set(), whose errors it throws; to be asked once, not for each ray. Hits are
+/// the same bits for all.
 template <uint32_t kWidth>
 WideKernels wide_kernels();
 

@@ -1,5 +1,7 @@
 #include "kerf/trace/triangle_filter.h"
 
+#include "kerf/base/instruction_set.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kerf/trace/triangle_filter.cpp"
 #include "kerf/base/simd.h"
@@ -57,7 +59,7 @@ size_t filter(const TriangleColumns& triangles, const PreparedRay& ray, size_t b
   return found;
 }
 
-TriangleKernels kernels() { return {&filter, hwy::TargetName(HWY_TARGET)}; }
+TriangleFilter kernel() { return &filter; }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace kerf
@@ -66,7 +68,7 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace kerf {
 
-HWY_EXPORT(kernels);
+HWY_EXPORT(kernel);
 
 void TriangleColumns::reserve(size_t count) {
   for (std::vector<float>& column : columns_) column.reserve(count + kPadding);
@@ -82,7 +84,10 @@ void TriangleColumns::finish() {
   for (std::vector<float>& column : columns_) column.resize(size_ + kPadding);
 }
 
-TriangleKernels triangle_kernels() { return HWY_DYNAMIC_DISPATCH(kernels)(); }
+TriangleKernels triangle_kernels() {
+  const InstructionSet set = chosen_instruction_set();
+  return {KERF_DISPATCH(kernel, set)(), set.name};
+}
 
 }  // namespace kerf
 #endif

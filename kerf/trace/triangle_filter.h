@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "kerf/geometry/prepared_ray.h"
@@ -35,10 +36,10 @@ using TriangleFilter = size_t (*)(const TriangleColumns& triangles, const Prepar
 /// What one instruction set offers.
 struct TriangleKernels {
   TriangleFilter filter;
-  const char* instruction_set;  ///< as Highway calls it
+  std::string_view instruction_set;  ///< its name
 };
 
-/// The kernels for the best instruction set of this machine; to be asked once, not for each ray.
+/// The kernels for the chosen_instruction_set(), whose errors it throws; to be asked once, not for each ray.
 TriangleKernels triangle_kernels();
 
 }  // namespace kerf

@@ -22,6 +22,7 @@ class BruteForceStructure : public Structure {
   const void* data() const override { return &tracer_; }
   size_t bytes() const override { return tracer_.bytes(); }
   uint64_t hash() const override { return 0; }
+  std::string_view instruction_set() const override { return tracer_.instruction_set(); }
 
   std::optional<std::string> find_fault() const override {
     if (tracer_.size() == slots_.size()) return std::nullopt;

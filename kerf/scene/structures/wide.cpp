@@ -15,6 +15,7 @@ class WideStructure : public Structure {
 
   const TraceTable& table() const override { return *kernels_.table; }
   const void* data() const override { return &tracer_; }
+  std::string_view instruction_set() const override { return kernels_.instruction_set; }
   size_t bytes() const override { return tracer_.layout.bytes(); }
   uint64_t hash() const override { return tree_hash(tracer_.layout); }
   std::optional<std::string> find_fault() const override {
