@@ -16,28 +16,28 @@ struct alignas(16) LeafUnit {
 };
 static_assert(sizeof(LeafUnit) == 16);
 
-/// Up to eight triangles as kernels read them, without a gap: a float, the largest extent of the box around them; nine
-/// columns of `count` floats, x, y and z of the first corners, of the second, of the third; `count` slots. 4 + 44 bytes
-/// a triangle, rounded up to whole units: 48, 96, 144, 192, 224, 272, 320, 368. A kernel may read a full vector at a
-/// column's start, whatever its width up to 16 floats, since kPadding units follow the last leaf.
+/// Up to eight triangles as kernels read them, without a gap: nine columns of `count` floats, x, y and z of the first
+/// corners, of the second, of the third; `count` slots. 44 bytes a triangle, rounded up to whole units: 48, 96, 144,
+/// 176, 224, 272, 320, 352. A kernel may read a full vector at a column's start, whatever its width up to 16 floats,
+/// since kPadding units follow the last leaf.
 struct TriangleLeaf {
   static constexpr uint32_t kMost = 8;
   static constexpr size_t kPadding = 4;
+  static constexpr size_t kFloats = 11;  ///< of a triangle, its slot included
 
   const float* data;
   uint32_t count;
 
-  static constexpr size_t units(size_t count) { return (1 + 11 * count + 3) / 4; }
+  static constexpr size_t units(size_t count) { return (kFloats * count + 3) / 4; }
 
-  float extent() const { return data[0]; }
-  const float* column(uint32_t corner, uint32_t axis) const { return data + 1 + size_t{corner * 3 + axis} * count; }
+  const float* column(uint32_t corner, uint32_t axis) const { return data + size_t{corner * 3 + axis} * count; }
   Triangle triangle(uint32_t i) const {
     const auto corner = [&](uint32_t c) { return Vec3f{column(c, 0)[i], column(c, 1)[i], column(c, 2)[i]}; };
     return {corner(0), corner(1), corner(2)};
   }
   LeafSlot slot(uint32_t i) const {
     uint32_t words[2];
-    std::memcpy(words, data + 1 + size_t{9} * count + size_t{2} * i, sizeof words);
+    std::memcpy(words, data + size_t{9} * count + size_t{2} * i, sizeof words);
     return {words[0], words[1]};
   }
 };

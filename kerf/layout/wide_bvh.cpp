@@ -145,7 +145,7 @@ class Check {
     if (is_other) return;
     std::vector<LeafUnit> expected(TriangleLeaf::units(slots.size()));
     write_triangle_leaf(slots, geometries_, expected.data());
-    const size_t bytes = sizeof(float) * (1 + 11 * slots.size());
+    const size_t bytes = sizeof(float) * TriangleLeaf::kFloats * slots.size();
     if (std::memcmp(expected.data(), &layout_.leaves[child.number()], bytes) != 0) {
       fault_ = name + " has not the caller's triangles";
     }
@@ -166,7 +166,7 @@ std::vector<LeafSlot> WideBvh<kWidth>::slots(WideChild leaf) const {
   const bool is_other = leaf.kind() == WideChild::kSlots;
   const size_t count = is_other ? std::bit_cast<uint32_t>(unit->values[0]) : leaf.kind();
   std::vector<LeafSlot> slots(count);
-  const float* from = is_other ? unit[1].values : unit->values + 1 + 9 * count;
+  const float* from = is_other ? unit[1].values : unit->values + 9 * count;
   std::memcpy(static_cast<void*>(slots.data()), from, count * sizeof(LeafSlot));
   return slots;
 }
