@@ -1,6 +1,5 @@
 #include "kerf/base/line_array.h"
 
-#include <cstdlib>
 #include <new>
 
 #if defined(__linux__)
@@ -14,21 +13,21 @@ constexpr size_t kLine = 64;
 constexpr size_t kHugePage = size_t{1} << 21;
 constexpr size_t kLeastHuge = 2 * kHugePage;  // below that most of a page would be wasted
 
+std::align_val_t border_of(size_t bytes) { return std::align_val_t{bytes >= kLeastHuge ? kHugePage : kLine}; }
+
 }  // namespace
 
 void* allocate_lines(size_t bytes) {
-  const size_t border = bytes >= kLeastHuge ? kHugePage : kLine;
-  const size_t whole = (bytes + border - 1) / border * border;
-  if (whole < bytes) throw std::bad_alloc();
-  void* memory = std::aligned_alloc(border, whole);
-  if (memory == nullptr) throw std::bad_alloc();
+  const std::align_val_t border = border_of(bytes);
+  void* memory = ::operator new(bytes, border);
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
-  if (border == kHugePage) madvise(memory, whole, MADV_HUGEPAGE);  // a wish: it works without
+  // A wish: it works without. The last page may be shared with what follows, so it is left as it is.
+  if (border == std::align_val_t{kHugePage}) madvise(memory, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
 #endif
-  std::memset(memory, 0, whole);
+  std::memset(memory, 0, bytes);
   return memory;
 }
 
-void free_lines(void* memory) noexcept { std::free(memory); }
+void free_lines(void* memory, size_t bytes) noexcept { ::operator delete(memory, border_of(bytes)); }
 
 }  // namespace kerf::detail

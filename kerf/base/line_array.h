@@ -12,7 +12,7 @@ namespace detail {
 /// Zeroed memory at the border of a cache line; from some megabytes on, on huge pages where the system offers them,
 /// which spares a traversal most misses of the table of pages. Throws std::bad_alloc.
 void* allocate_lines(size_t bytes);
-void free_lines(void* memory) noexcept;
+void free_lines(void* memory, size_t bytes) noexcept;
 
 }  // namespace detail
 
@@ -35,7 +35,7 @@ class LineArray {
     std::swap(size_, other.size_);
     return *this;
   }
-  ~LineArray() { detail::free_lines(data_); }
+  ~LineArray() { detail::free_lines(data_, bytes()); }
 
   size_t size() const { return size_; }
   size_t bytes() const { return size_ * sizeof(T); }

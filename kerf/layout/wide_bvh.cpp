@@ -2,7 +2,6 @@
 
 #include <bit>
 
-#include "kerf/base/error.h"
 #include "kerf/base/parallel.h"
 #include "kerf/layout/wide_collapse.h"
 #include "kerf/tree/hash_values.h"
@@ -177,13 +176,10 @@ WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, std::span<const Geometry> geometri
   if (bvh.nodes.empty()) return layout;
   const WideCollapse collapse(bvh, geometries, kWidth, costs);
   const WideCollapse::Size size = collapse.size(0);
-  if (size.nodes > WideChild::kMostNumbers || size.units > WideChild::kMostNumbers) {
-    throw Error(ErrorCode::too_large, "bvh" + std::to_string(kWidth),
-                std::to_string(bvh.slots.size()) + " references are too many for it; bvh2 takes them");
-  }
-  const HeldBytes held(size.nodes * sizeof(WideNode<kWidth>) + size.units * sizeof(LeafUnit));
+  const HeldBytes held(size_t{size.nodes} * sizeof(WideNode<kWidth>) +
+                       (size_t{size.units} + TriangleLeaf::kPadding) * sizeof(LeafUnit));
   layout.nodes = LineArray<WideNode<kWidth>>(size.nodes);
-  layout.leaves = LineArray<LeafUnit>(size.units + TriangleLeaf::kPadding);
+  layout.leaves = LineArray<LeafUnit>(size_t{size.units} + TriangleLeaf::kPadding);
   layout.bounds = bvh.nodes[0].bounds();
   layout.root = Writer<kWidth>(bvh, geometries, collapse, layout).write(0, 0, 0, 0);
   return layout;

@@ -14,7 +14,6 @@ struct WideChild {
   /// Kind 0: an inner node, by number. Kinds 1 to 8: a leaf of so many triangles, by the place of its TriangleLeaf.
   /// kSlots: a leaf of any primitives, by the place of its slots, which follow a unit that begins with their number.
   static constexpr uint32_t kKindBits = 4, kInner = 0, kSlots = 9;
-  static constexpr uint32_t kMostNumbers = 1U << (32 - kKindBits);
 
   uint32_t word = 0;
 
@@ -56,7 +55,8 @@ struct WideBvh {
   std::vector<LeafSlot> slots(WideChild leaf) const;
 };
 
-/// Primitives that stand in a leaf twice are kept once. Throws Error(too_large) above 2^28 nodes or 4 GB of leaves.
+/// Primitives that stand in a leaf twice are kept once. Throws Error(too_large) above 2^28 nodes or 4 GB of
+/// leaves, and what the current limit does.
 template <uint32_t kWidth>
 WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, std::span<const Geometry> geometries, const WideCosts& costs = {});
 

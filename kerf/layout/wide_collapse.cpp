@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <string>
 #include <variant>
 
+#include "kerf/base/error.h"
 #include "kerf/base/parallel.h"
 
 namespace kerf {
@@ -11,26 +13,21 @@ namespace {
 
 constexpr uint32_t kTaskDepth = 10;
 
-/// f(first child) and g(second child), at once in the upper levels of a tree.
-template <class F>
-void for_both(const BvhNode& node, uint32_t depth, const F& f) {
-  if (depth < kTaskDepth) {
-    parallel_invoke([&] { f(node.first); }, [&] { f(node.first + 1); });
-  } else {
-    f(node.first);
-    f(node.first + 1);
-  }
-}
-
 }  // namespace
 
-WideCollapse::WideCollapse(const Bvh& bvh, std::span<const Geometry> geometries, uint32_t width, const WideCosts& costs)
-    : bvh_(bvh), geometries_(geometries), width_(width), costs_(costs), held_(bvh.nodes.size() * sizeof(Plan)) {
-  assert(width >= 2 && width <= kMostChildren);
+WideCollapse::WideCollapse(const Bvh& bvh, std::span<const Geometry> geometries, uint32_t width, const WideCosts& costs,
+                           uint32_t most)
+    : bvh_(bvh),
+      geometries_(geometries),
+      width_(width),
+      costs_(costs),
+      most_(most),
+      held_(bvh.nodes.size() * sizeof(Plan)) {
+  assert(width >= 2 && width <= kMostChildren && most <= kMostNumbers);
   plans_.resize(bvh.nodes.size());
   const double root = half_area(bvh.nodes[0].bounds());
   scale_ = root > 0 ? 1 / root : 0;
-  solve(0, 0);
+  cost_ = solve(0, 0)[0];
   measure(0, 0);
 }
 
@@ -41,61 +38,72 @@ bool WideCollapse::are_triangles(uint32_t node) const {
   });
 }
 
-void WideCollapse::solve(uint32_t node, uint32_t depth) {
+WideCollapse::Costs WideCollapse::solve(uint32_t node, uint32_t depth) {
   const BvhNode& n = bvh_.nodes[node];
   if (n.is_leaf()) return solve_leaf(node);
-  for_both(n, depth, [&](uint32_t child) { solve(child, depth + 1); });
-  solve_inner(node);
+  Costs a, b;
+  if (depth < kTaskDepth) {
+    parallel_invoke([&] { a = solve(n.first, depth + 1); }, [&] { b = solve(n.first + 1, depth + 1); });
+  } else {
+    a = solve(n.first, depth + 1);
+    b = solve(n.first + 1, depth + 1);
+  }
+  return solve_inner(node, a, b);
 }
 
-void WideCollapse::solve_leaf(uint32_t node) {
+WideCollapse::Costs WideCollapse::solve_leaf(uint32_t node) {
   Plan& plan = plans_[node];
   const BvhNode& n = bvh_.nodes[node];
   FewSlots slots;
   const uint32_t count = are_triangles(node) ? gather(node, slots, 0) : TriangleLeaf::kMost + 1;
   const bool fits = count <= TriangleLeaf::kMost;
-  plan.is_leaf = true;
-  plan.slots = fits ? static_cast<uint8_t>(count) : 0;
+  plan.set_leaf();
+  if (fits) plan.set_slots(count);
   const double cost = fits ? costs_.leaf + costs_.triangle * count : costs_.primitive * n.count;
-  plan.cost.fill(static_cast<float>(scale_ * half_area(n.bounds()) * cost));
-  plan.first.fill(0);
+  Costs costs;
+  costs.fill(static_cast<float>(scale_ * half_area(n.bounds()) * cost));
+  return costs;
 }
 
-void WideCollapse::solve_inner(uint32_t node) {
+WideCollapse::Costs WideCollapse::solve_inner(uint32_t node, const Costs& a, const Costs& b) {
   Plan& plan = plans_[node];
   const BvhNode& n = bvh_.nodes[node];
-  const Plan &a = plans_[n.first], &b = plans_[n.first + 1];
-  std::array<float, kMostChildren> divided;  // the cheapest of i + 1 subtrees, at least one in each child
-  plan.first.fill(0);
+  Costs divided;                                // the cheapest of i + 1 subtrees, at least one in each child
+  std::array<uint32_t, kMostChildren> first{};  // how many of them the first child gets
   for (uint32_t i = 1; i < width_; ++i) {
-    divided[i] = a.cost[0] + b.cost[i - 1];
-    plan.first[i] = 1;
+    divided[i] = a[0] + b[i - 1];
+    first[i] = 1;
     for (uint32_t k = 1; k < i; ++k) {
-      const float cost = a.cost[k] + b.cost[i - 1 - k];
+      const float cost = a[k] + b[i - 1 - k];
       if (cost >= divided[i]) continue;
       divided[i] = cost;
-      plan.first[i] = static_cast<uint8_t>(k + 1);
+      first[i] = k + 1;
     }
   }
   const double area = scale_ * half_area(n.bounds());
   // As an inner node, whose own children divide the full width; as a leaf if all fit.
-  plan.first[0] = plan.first[width_ - 1];
-  plan.cost[0] = static_cast<float>(area * costs_.node) + divided[width_ - 1];
-  if (a.slots > 0 && b.slots > 0) {
+  Costs costs;
+  plan.set_first(0, first[width_ - 1]);
+  costs[0] = static_cast<float>(area * costs_.node) + divided[width_ - 1];
+  if (plans_[n.first].slots() > 0 && plans_[n.first + 1].slots() > 0) {
     FewSlots slots;
     const uint32_t count = gather(node, slots, 0);
     const auto cost = static_cast<float>(area * (costs_.leaf + costs_.triangle * count));
     if (count <= TriangleLeaf::kMost) {
-      plan.slots = static_cast<uint8_t>(count);
-      plan.is_leaf = cost <= plan.cost[0];
-      if (plan.is_leaf) plan.cost[0] = cost;
+      plan.set_slots(count);
+      if (cost <= costs[0]) {
+        plan.set_leaf();
+        costs[0] = cost;
+      }
     }
   }
   for (uint32_t i = 1; i < width_; ++i) {
-    const bool is_better = divided[i] < plan.cost[i - 1];
-    if (!is_better) plan.first[i] = 0;
-    plan.cost[i] = is_better ? divided[i] : plan.cost[i - 1];
+    // Of equals the more subtrees: they make fewer nodes, also where nothing has an area.
+    const bool is_better = divided[i] <= costs[i - 1];
+    if (is_better) plan.set_first(i, first[i]);
+    costs[i] = is_better ? divided[i] : costs[i - 1];
   }
+  return costs;
 }
 
 /// The different primitives of a subtree of triangles; more than kMost where there are more.
@@ -117,19 +125,19 @@ uint32_t WideCollapse::gather(uint32_t node, FewSlots& slots, uint32_t count) co
 
 void WideCollapse::collect(uint32_t node, uint32_t most, Children& children, uint32_t& count) const {
   const Plan& plan = plans_[node];
-  while (most > 1 && plan.first[most - 1] == 0) --most;
+  while (most > 1 && plan.first(most - 1) == 0) --most;
   if (most == 1) {
     children[count++] = node;
     return;
   }
-  const uint32_t first = plan.first[most - 1];
+  const uint32_t first = plan.first(most - 1);
   collect(bvh_.nodes[node].first, first, children, count);
   collect(bvh_.nodes[node].first + 1, most - first, children, count);
 }
 
 uint32_t WideCollapse::children(uint32_t node, Children& children) const {
   assert(!is_leaf(node));
-  const uint32_t first = plans_[node].first[0];
+  const uint32_t first = plans_[node].first(0);
   uint32_t count = 0;
   collect(bvh_.nodes[node].first, first, children, count);
   collect(bvh_.nodes[node].first + 1, width_ - first, children, count);
@@ -147,8 +155,9 @@ std::span<const LeafSlot> WideCollapse::leaf_slots(uint32_t node, FewSlots& few)
 
 void WideCollapse::measure(uint32_t node, uint32_t depth) {
   Plan& plan = plans_[node];
-  if (plan.is_leaf) {
-    plan.size.units = plan.slots > 0 ? TriangleLeaf::units(plan.slots) : slots_units(bvh_.nodes[node].count);
+  if (plan.is_leaf()) {
+    const size_t units = plan.slots() > 0 ? TriangleLeaf::units(plan.slots()) : slots_units(bvh_.nodes[node].count);
+    plan.size.units = static_cast<uint32_t>(units);
     return;
   }
   Children all;
@@ -166,6 +175,10 @@ void WideCollapse::measure(uint32_t node, uint32_t depth) {
     plan.size.nodes += plans_[all[i]].size.nodes;
     plan.size.units += plans_[all[i]].size.units;
   }
+  // Of eight children that are not too large each the sum fits its number.
+  if (plan.size.nodes <= most_ && plan.size.units <= most_) return;
+  throw Error(ErrorCode::too_large, "bvh" + std::to_string(width_),
+              std::to_string(bvh_.slots.size()) + " references are too many for it; bvh2 takes them");
 }
 
 }  // namespace kerf

@@ -19,13 +19,18 @@ class WideCollapse {
   static constexpr uint32_t kMostChildren = 8;
   using Children = std::array<uint32_t, kMostChildren>;
 
-  /// The tree must have a node and outlive this. `width`: 2 to kMostChildren.
-  WideCollapse(const Bvh& bvh, std::span<const Geometry> geometries, uint32_t width, const WideCosts& costs);
+  /// Nodes and units that a layout's words can number.
+  static constexpr uint32_t kMostNumbers = 1U << 28;
+
+  /// The tree must have a node and outlive this. `width`: 2 to kMostChildren. Throws Error(too_large) where more than
+  /// `most` nodes or units of leaves would be needed.
+  WideCollapse(const Bvh& bvh, std::span<const Geometry> geometries, uint32_t width, const WideCosts& costs,
+               uint32_t most = kMostNumbers);
 
   /// What a binary node that is the root of a wide subtree becomes: a leaf, of triangles only or of any primitives, or
   /// an inner node.
-  bool is_leaf(uint32_t node) const { return plans_[node].is_leaf; }
-  bool is_triangles(uint32_t node) const { return plans_[node].slots > 0; }
+  bool is_leaf(uint32_t node) const { return plans_[node].is_leaf(); }
+  bool is_triangles(uint32_t node) const { return plans_[node].slots() > 0; }
 
   /// The children of what becomes an inner node, the largest first; returns how many.
   uint32_t children(uint32_t node, Children& children) const;
@@ -36,23 +41,43 @@ class WideCollapse {
 
   /// Wide nodes and units of leaves in a wide subtree.
   struct Size {
-    uint64_t nodes = 0, units = 0;
+    uint32_t nodes = 0, units = 0;
   };
   Size size(uint32_t node) const { return plans_[node].size; }
+  /// The cost of all, in visits of a node by a random ray that meets the root's box; 0 where that has no area.
+  double cost() const { return cost_; }
+
+  /// What is held of each binary node.
+  static constexpr size_t kBytesPerNode = 12;
 
  private:
-  /// One binary node.
-  struct Plan {
-    std::array<float, kMostChildren> cost;     ///< of the cheapest forest of at most i + 1 wide subtrees
-    std::array<uint8_t, kMostChildren> first;  ///< how many of these the first child gets; 0: as for one less
-    uint8_t slots = 0;  ///< triangles, if there are only such and few enough for one leaf; else 0
-    bool is_leaf = false;
-    Size size;
-  };
+  /// Of the cheapest forest of at most i + 1 wide subtrees that a binary node becomes.
+  using Costs = std::array<float, kMostChildren>;
 
-  void solve(uint32_t node, uint32_t depth);
-  void solve_leaf(uint32_t node);
-  void solve_inner(uint32_t node);
+  /// One binary node.
+  class Plan {
+   public:
+    /// How many of i + 1 subtrees the first child gets; 0: as for one less.
+    uint32_t first(uint32_t i) const { return word_ >> (3 * i) & 7; }
+    void set_first(uint32_t i, uint32_t count) { word_ = (word_ & ~(7U << (3 * i))) | count << (3 * i); }
+    /// Triangles, if there are only such and few enough for one leaf; else 0.
+    uint32_t slots() const { return word_ >> kSlotsBit & 15; }
+    void set_slots(uint32_t count) { word_ |= count << kSlotsBit; }
+    bool is_leaf() const { return (word_ & kIsLeaf) != 0; }
+    void set_leaf() { word_ |= kIsLeaf; }
+
+    Size size;
+
+   private:
+    static constexpr uint32_t kSlotsBit = 3 * kMostChildren, kIsLeaf = 1U << 28;
+
+    uint32_t word_ = 0;
+  };
+  static_assert(sizeof(Plan) == kBytesPerNode);
+
+  Costs solve(uint32_t node, uint32_t depth);
+  Costs solve_leaf(uint32_t node);
+  Costs solve_inner(uint32_t node, const Costs& a, const Costs& b);
   void measure(uint32_t node, uint32_t depth);
   uint32_t gather(uint32_t node, FewSlots& slots, uint32_t count) const;
   void collect(uint32_t node, uint32_t most, Children& children, uint32_t& count) const;
@@ -62,7 +87,9 @@ class WideCollapse {
   std::span<const Geometry> geometries_;
   uint32_t width_;
   WideCosts costs_;
+  uint32_t most_;
   double scale_;  ///< of areas: in shares of the root's
+  double cost_ = 0;
   std::vector<Plan> plans_;
   HeldBytes held_;
 };

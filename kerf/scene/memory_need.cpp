@@ -32,11 +32,9 @@ double growth_of(const Stage& stage) {
 }
 
 Takes takes_of(const Pipeline& pipeline) {
-  // A tree and the nodes of its layout beside it.
-  constexpr size_t kLayoutBytes = sizeof(LeafSlot) + 4 * sizeof(BvhNode);
   Takes takes;
   for (const Stage& stage : pipeline.stages) {
-    size_t bytes = kLayoutBytes;
+    size_t bytes = layouts().front().bytes_per_reference;
     if (const auto* splitter = std::get_if<const SplitterEntry*>(&stage.entry->entry)) {
       takes.per_primitive = (*splitter)->bytes_per_primitive;
       takes.per_split_reference = (*splitter)->bytes_per_reference;
@@ -50,6 +48,7 @@ Takes takes_of(const Pipeline& pipeline) {
       bytes = (*optimiser)->bytes_per_reference;
     } else if (const auto* layout = std::get_if<const LayoutEntry*>(&stage.entry->entry)) {
       takes.is_bounded = takes.is_bounded && (*layout)->is_bounded;
+      bytes = (*layout)->bytes_per_reference;
     } else {
       bytes = std::get<const StructureEntry*>(stage.entry->entry)->bytes_per_reference;
       takes.is_bounded = false;

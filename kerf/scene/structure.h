@@ -82,8 +82,10 @@ struct LayoutEntry {
   uint32_t leaf_size;  ///< slots that a leaf of the Bvh may have at most; 0: any number
   /// The input's references are gone: they are in the Bvh.
   std::unique_ptr<Structure> (*make)(Bvh bvh, const StructureInput& input, const OptionValues& options);
-  bool is_bounded = true;  ///< it never takes more than a tree and its nodes once more
+  bool is_bounded = true;  ///< it never takes more than bytes_per_reference
   bool refits = false;     ///< its structures can be refitted
+  /// With the Bvh that it is made from; by default a tree and its nodes once more.
+  size_t bytes_per_reference = sizeof(LeafSlot) + 4 * sizeof(BvhNode);
 };
 std::span<const LayoutEntry> layouts();
 

@@ -5,8 +5,8 @@
 
 #include "kerf/build/bsp_sah.h"
 #include "kerf/build/top_down.h"
-#include "kerf/layout/triangle_leaf.h"
-#include "kerf/layout/wide_costs.h"
+#include "kerf/layout/wide_bvh.h"
+#include "kerf/layout/wide_collapse.h"
 #include "kerf/scene/structure.h"
 
 namespace kerf {
@@ -62,6 +62,10 @@ inline constexpr OptionSpec kWideOptions[] = {
     {"leaf_cost", "cost of visiting a leaf, against that of a node, for the collapse", WideCosts{}.leaf, 0, 1e30},
     {"triangle_cost", "cost of each of its triangles, against that of a node", WideCosts{}.triangle, 0, 1e30},
 };
+/// A Bvh and what its collapse holds, then at worst a leaf for each reference, and above them nodes of two children.
+template <uint32_t kWidth>
+inline constexpr size_t kWideBytes = sizeof(LeafSlot) + 2 * (sizeof(BvhNode) + WideCollapse::kBytesPerNode) +
+                                     TriangleLeaf::units(1) * sizeof(LeafUnit) + sizeof(WideNode<kWidth>);
 inline constexpr std::string_view kWideSource =
     "Ylitie, Karras, Laine: Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, 2017, section 3.1";
 inline constexpr LayoutEntry kBvh4Layout = {
@@ -71,7 +75,9 @@ inline constexpr LayoutEntry kBvh4Layout = {
     kWideOptions,
     TriangleLeaf::kMost,
     make_bvh4_structure,
-    false};
+    true,
+    false,
+    kWideBytes<4>};
 inline constexpr LayoutEntry kBvh8Layout = {
     "bvh8",
     "nodes of up to eight children, tested at once, and leaves of up to eight triangles, tested at once",
@@ -79,7 +85,9 @@ inline constexpr LayoutEntry kBvh8Layout = {
     kWideOptions,
     TriangleLeaf::kMost,
     make_bvh8_structure,
-    false};
+    true,
+    false,
+    kWideBytes<8>};
 
 std::unique_ptr<Structure> make_late_split_structure(Bvh bvh, const StructureInput& input, const OptionValues& options);
 inline constexpr OptionSpec kLateSplitOptions[] = {
