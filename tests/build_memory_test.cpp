@@ -129,12 +129,20 @@ TEST(Memory, NeedGrowsWithTheCap) {
 
 TEST(BuildMemory, WhatRefitsNeedCounts) {
   const RandomTriangles triangles(20000);
-  const auto peak = [&](bool refittable) {
-    Scene scene;
-    scene.add(triangles.geometry());
-    return scene.build({.structure = "early_split(budget=4)+binned_sah", .refittable = refittable}).peak_bytes;
-  };
-  EXPECT_GT(peak(true), peak(false) + 8 * 20000);
+  for (const std::string layout : {"bvh2", "bvh8"}) {
+    const auto build = [&](bool refittable) {
+      Scene scene;
+      scene.add(triangles.geometry());
+      scene.build({.structure = "early_split(budget=4)+binned_sah+" + layout, .refittable = refittable});
+      return scene;
+    };
+    const size_t peak = heap_peak([&] { build(true); });
+    Scene scene = build(true);
+    EXPECT_NEAR(static_cast<double>(scene.report().peak_bytes), static_cast<double>(peak),
+                0.1 * static_cast<double>(peak));
+    EXPECT_GT(scene.report().peak_bytes, build(false).report().peak_bytes + 8 * 20000) << layout;
+    EXPECT_GT(scene.refit().bytes, 8 * 20000U) << layout;
+  }
 }
 
 }  // namespace

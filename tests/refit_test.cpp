@@ -168,7 +168,8 @@ TEST(Refit, EveryTreeHitsWhatBruteForceHitsHoweverThingsMove) {
 }
 
 TEST(Refit, AnySizeFromDenormalToHuge) {
-  const std::vector<std::string> some = {"binned_sah", "early_split(budget=3)+binned_sah", "spatial_split"};
+  const std::vector<std::string> some = {"binned_sah", "early_split(budget=3)+binned_sah", "spatial_split",
+                                         "early_split(budget=3)+binned_sah+bvh8", "spatial_split+bvh4"};
   for (const float size : {1e-40F, 1e-30F, 1e-10F, 1e5F, 1e20F, 1e22F}) {
     check_moves(random_things(150, 2, size), size, some, 20);
   }
@@ -181,13 +182,17 @@ TEST(Refit, NeedlesFarFromTheOriginCutIntoMany) {
     const Vec3f at = Vec3f{1e4F, -1e4F, 1e4F} + 10.0F * random.vector();
     needles.add({at, at + 20.0F * random.vector(), at + 0.01F * random.vector()});
   }
-  check_moves(needles, 10, {"early_split(budget=16)+binned_sah", "early_split(budget=16)+lbvh+skip_pointer"}, 50);
+  check_moves(needles, 10,
+              {"early_split(budget=16)+binned_sah", "early_split(budget=16)+lbvh+skip_pointer",
+               "early_split(budget=16)+binned_sah+bvh8", "early_split(budget=16)+lbvh+bvh4"},
+              50);
 }
 
 TEST(Refit, ThingsInOnePlace) {
   MovingThings heap;
   for (uint32_t i = 0; i < kManyCoincident; ++i) heap.add({{0, 0, 1}, {1, 0, 1}, {0, 1, 1}});
-  for (const std::string structure : {"binned_sah", "early_split(budget=2)+ploc"}) {
+  for (const std::string structure :
+       {"binned_sah", "early_split(budget=2)+ploc", "early_split(budget=2)+binned_sah+bvh8"}) {
     Scene scene = scene_of(heap, {.structure = structure, .refittable = true});
     const MovingThings moved = heap.moved([](Vec3f p) { return p + Vec3f{0, 0, 4}; });
     scene.refit(moved.geometries());
@@ -234,8 +239,8 @@ TEST(Refit, AnyNumberOfThreadsMakesTheSameTree) {
   const MovingThings things = random_things(kManyThings, 5);
   const MovingThings moved = things.moved([](Vec3f p) { return twisted(p, 0.1F); });
   const std::vector<Geometry> geometries = moved.geometries();
-  for (const std::string structure :
-       {"early_split(budget=2)+binned_sah", "lbvh+skip_pointer", "spatial_split+packets"}) {
+  for (const std::string structure : {"early_split(budget=2)+binned_sah", "lbvh+skip_pointer", "spatial_split+packets",
+                                      "early_split(budget=2)+binned_sah+bvh8", "lbvh+bvh4"}) {
     Scene scene = scene_of(things, {.structure = structure, .refittable = true});
     const RefitReport one = scene.refit(geometries, 1);
     const uint64_t hash = scene.structure().hash();

@@ -4,6 +4,7 @@
 
 #include "kerf/base/parallel.h"
 #include "kerf/layout/wide_collapse.h"
+#include "kerf/layout/wide_refit.h"
 #include "kerf/tree/hash_values.h"
 
 namespace kerf {
@@ -28,11 +29,7 @@ class Writer {
     std::array<size_t, kWidth> nodes, units;
     size_t next_node = first_node + 1, next_unit = first_unit;
     for (uint32_t i = 0; i < count; ++i) {
-      const BvhNode& child = bvh_.nodes[children[i]];
-      for (uint32_t axis = 0; axis < 3; ++axis) {
-        to.sides[axis][0][i] = child.lower[axis];
-        to.sides[axis][1][i] = child.upper[axis];
-      }
+      to.set_bounds(i, bvh_.nodes[children[i]].bounds());
       nodes[i] = next_node;
       units[i] = next_unit;
       next_node += collapse_.size(children[i]).nodes;
@@ -99,7 +96,7 @@ class Check {
  private:
   void visit(WideChild child, const Box3f& box, uint32_t depth) {
     if (!fault_.empty()) return;
-    if (child.is_leaf()) return visit_leaf(child);
+    if (child.is_leaf()) return visit_leaf(child, box);
     const uint32_t number = child.number();
     const std::string name = "node " + std::to_string(number);
     if (number >= layout_.nodes.size())
@@ -123,10 +120,10 @@ class Check {
       all.extend(node.bounds(i));
       visit(node.child[i], node.bounds(i), depth + 1);
     }
-    if (fault_.empty() && !box.contains(all)) fault_ = name + " has children outside its box";
+    if (fault_.empty() && box != all) fault_ = name + " has a box that is not around its children";
   }
 
-  void visit_leaf(WideChild child) {
+  void visit_leaf(WideChild child, const Box3f& box) {
     const std::string name = "the leaf at unit " + std::to_string(child.number());
     const bool is_other = child.kind() == WideChild::kSlots;
     if (child.number() != units_ || (!is_other && child.kind() > TriangleLeaf::kMost)) {
@@ -138,6 +135,11 @@ class Check {
     for (const LeafSlot& slot : slots) {
       if (slot.geometry() >= geometries_.size() || slot.primitive >= primitive_count(geometries_[slot.geometry()])) {
         fault_ = name + " names no primitive";
+        return;
+      }
+      if (slot.is_repeated()) continue;
+      if (!box.contains(primitive_bounds(geometries_[slot.geometry()], slot.primitive))) {
+        fault_ = name + " has a primitive that reaches out of its box";
         return;
       }
     }
@@ -171,11 +173,17 @@ std::vector<LeafSlot> WideBvh<kWidth>::slots(WideChild leaf) const {
 }
 
 template <uint32_t kWidth>
-WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, std::span<const Geometry> geometries, const WideCosts& costs) {
+WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, std::span<const Geometry> geometries, const WideCosts& costs,
+                              LeafNumbers* numbers) {
   WideBvh<kWidth> layout;
   if (bvh.nodes.empty()) return layout;
   const WideCollapse collapse(bvh, geometries, kWidth, costs);
   const WideCollapse::Size size = collapse.size(0);
+  HeldBytes held_numbers;
+  if (numbers != nullptr) {
+    held_numbers.set((size.units / 2 + bvh.slots.size()) * sizeof(uint32_t));
+    *numbers = number_leaves(bvh, collapse);
+  }
   const HeldBytes held(size_t{size.nodes} * sizeof(WideNode<kWidth>) +
                        (size_t{size.units} + TriangleLeaf::kPadding) * sizeof(LeafUnit));
   layout.nodes = LineArray<WideNode<kWidth>>(size.nodes);
@@ -196,10 +204,10 @@ uint64_t tree_hash(const WideBvh<kWidth>& layout) {
   return hash_values(hash_values(layout.root.word, layout.nodes.span()), layout.leaves.span());
 }
 
-#define KERF_INSTANTIATE(width)                                                                            \
-  template std::vector<LeafSlot> WideBvh<width>::slots(WideChild) const;                                   \
-  template WideBvh<width> make_wide_bvh<width>(const Bvh&, std::span<const Geometry>, const WideCosts&);   \
-  template std::optional<std::string> find_fault<width>(const WideBvh<width>&, std::span<const Geometry>); \
+#define KERF_INSTANTIATE(width)                                                                                        \
+  template std::vector<LeafSlot> WideBvh<width>::slots(WideChild) const;                                               \
+  template WideBvh<width> make_wide_bvh<width>(const Bvh&, std::span<const Geometry>, const WideCosts&, LeafNumbers*); \
+  template std::optional<std::string> find_fault<width>(const WideBvh<width>&, std::span<const Geometry>);             \
   template uint64_t tree_hash<width>(const WideBvh<width>&);
 KERF_INSTANTIATE(4)
 KERF_INSTANTIATE(8)

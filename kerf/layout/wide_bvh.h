@@ -9,6 +9,8 @@
 
 namespace kerf {
 
+struct LeafNumbers;
+
 /// Where a child of a wide node is: its kind in the low four bits, above them a number. 4 bytes.
 struct WideChild {
   /// Kind 0: an inner node, by number. Kinds 1 to 8: a leaf of so many triangles, by the place of its TriangleLeaf.
@@ -33,6 +35,12 @@ struct alignas(64) WideNode {
   Box3f bounds(uint32_t i) const {
     return {{sides[0][0][i], sides[1][0][i], sides[2][0][i]}, {sides[0][1][i], sides[1][1][i], sides[2][1][i]}};
   }
+  void set_bounds(uint32_t i, const Box3f& box) {
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+      sides[axis][0][i] = box.lower[axis];
+      sides[axis][1][i] = box.upper[axis];
+    }
+  }
   bool has_child(uint32_t i) const { return sides[0][0][i] <= sides[0][1][i]; }
 };
 static_assert(sizeof(WideNode<4>) == 128 && sizeof(WideNode<8>) == 256);
@@ -56,12 +64,14 @@ struct WideBvh {
 };
 
 /// Primitives that stand in a leaf twice are kept once. Throws Error(too_large) above 2^28 nodes or 4 GB of
-/// leaves, and what the current limit does.
+/// leaves, and what the current limit does. `numbers`: where given, gets number_leaves().
 template <uint32_t kWidth>
-WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, std::span<const Geometry> geometries, const WideCosts& costs = {});
+WideBvh<kWidth> make_wide_bvh(const Bvh& bvh, std::span<const Geometry> geometries, const WideCosts& costs = {},
+                              LeafNumbers* numbers = nullptr);
 
-/// What is wrong with it, if anything: a child's box outside its parent's, a node or leaf reached twice or never, a
-/// leaf whose triangles are not the caller's.
+/// What is wrong with it, if anything: a box that is not around its children, a primitive that has one slot and
+/// reaches out of its leaf's box, a node or leaf reached twice or never or out of order, a path longer than kMaxDepth,
+/// a gap between children, a leaf whose triangles are not the caller's.
 template <uint32_t kWidth>
 std::optional<std::string> find_fault(const WideBvh<kWidth>& layout, std::span<const Geometry> geometries);
 

@@ -33,10 +33,14 @@ RestPose::RestPose(const Bvh& bvh, std::span<const Geometry> geometries, std::ve
                    size_t primitives)
     : fragments_(bvh, geometries, primitives), left_out_(std::move(left_out)) {
   if (!bvh.nodes.empty()) built_.bounds = bvh.nodes[0].bounds();
-  report_.sah_cost = report_.built_sah_cost = sah_cost(bvh);
-  built_.sums.nodes = report_.sah_cost * half_area(built_.bounds);
   built_.sums.parts = parts_area(bvh, {fragments_, bvh.slots, geometries});
   report_.bytes = fragments_.bytes() + left_out_.size() * sizeof(PrimitiveNumber);
+}
+
+void RestPose::set_built(double sah_cost, size_t bytes) {
+  report_.sah_cost = report_.built_sah_cost = sah_cost;
+  built_.sums.nodes = sah_cost * half_area(built_.bounds);
+  report_.bytes += bytes;
 }
 
 void RestPose::check(std::span<const Geometry> built, std::span<const Geometry> moved) const {

@@ -35,6 +35,9 @@ class RestPose {
   RestPose(const Bvh& bvh, std::span<const Geometry> geometries, std::vector<PrimitiveNumber> left_out,
            size_t primitives);
 
+  /// What the structure made from the tree costs and keeps for refits itself; once, before the first refit().
+  void set_built(double sah_cost, size_t bytes);
+
   /// Puts `moved` in the place of `built`, which the structure made from the tree looks at, and makes its boxes anew
   /// around it; returns the root's. Throws Error(invalid_argument) unless there are the same kinds and counts, and
   /// Error(invalid_geometry) for primitives in the tree that are invalid now, the first and how many; then all is as

@@ -105,7 +105,7 @@ void check_refits(const Pipeline& pipeline) {
   const auto* layout = std::get_if<const LayoutEntry*>(&last.entry);
   if (last.kind == "structure" || (layout != nullptr && !(*layout)->refits)) {
     throw Error(ErrorCode::invalid_option, std::string(last.name),
-                "it cannot be refitted: only trees of boxes can, as bvh2, skip_pointer or packets");
+                "it cannot be refitted: only trees of boxes can, as bvh2, bvh8, skip_pointer or packets");
   }
 }
 
@@ -135,7 +135,7 @@ struct Scene::Built {
   Built(std::vector<Geometry> added, const Pipeline& pipeline, const BuildOptions& options, const WorkLimit& limit);
   StructureInput make_input(const Pipeline& pipeline, const BuildOptions& options, const WorkLimit& limit,
                             Stages& stages);
-  void make_structure(StructureInput input, std::span<const Stage> makers, bool refittable, Stages& stages);
+  void make_structure(StructureInput input, std::span<const Stage> makers, Stages& stages);
   void describe();
 };
 
@@ -146,7 +146,7 @@ Scene::Built::Built(std::vector<Geometry> added, const Pipeline& pipeline, const
   report.structure = pipeline.text();
   StructureInput input = make_input(pipeline, options, limit, stages);
   const size_t first = pipeline.stages.front().entry->kind == "splitter" ? 1 : 0;
-  make_structure(std::move(input), std::span(pipeline.stages).subspan(first), options.refittable, stages);
+  make_structure(std::move(input), std::span(pipeline.stages).subspan(first), stages);
   stages.begin("measure", kMeasureWeight);
   describe();
   report.peak_bytes = std::max(limit.meter->peak(), report.bytes);
@@ -169,7 +169,7 @@ StructureInput Scene::Built::make_input(const Pipeline& pipeline, const BuildOpt
   report.seconds.references = stages.lap();
 
   const std::span<const Geometry> all = geometries;
-  StructureInput input{all, std::move(whole.references), false, limit, std::move(held)};
+  StructureInput input{all, std::move(whole.references), false, options.refittable, limit, std::move(held)};
   input.limit.check();
   if (const auto* splitter = std::get_if<const SplitterEntry*>(&pipeline.stages.front().entry->entry)) {
     stages.begin(pipeline.stages.front());
@@ -188,8 +188,7 @@ StructureInput Scene::Built::make_input(const Pipeline& pipeline, const BuildOpt
 
 /// `makers`: a structure, or a builder, then any number of optimisers, then a layout or none. What a maker is given it
 /// accounts for itself.
-void Scene::Built::make_structure(StructureInput input, std::span<const Stage> makers, bool refittable,
-                                  Stages& stages) {
+void Scene::Built::make_structure(StructureInput input, std::span<const Stage> makers, Stages& stages) {
   stages.begin(makers[0]);
   if (const auto* entry = std::get_if<const StructureEntry*>(&makers[0].entry->entry)) {
     structure = (*entry)->build(std::move(input), makers[0].options);
@@ -219,7 +218,7 @@ void Scene::Built::make_structure(StructureInput input, std::span<const Stage> m
   }
   report.seconds.optimise = stages.lap();
   stages.begin(layout.name, kLayoutWeight);
-  if (refittable) rest.emplace(bvh, geometries, find_left_out(geometries), kept);
+  if (input.refittable) rest.emplace(bvh, geometries, find_left_out(geometries), kept);
   const HeldBytes of_rest(rest ? rest->report().bytes : 0);
   std::unique_ptr<Structure> made = layout.make(std::move(bvh), input, layout_options);
   movable = made.get();
@@ -239,6 +238,7 @@ void Scene::Built::describe() {
   report.depth = statistics.depth;
   report.largest_leaf = statistics.largest_leaf;
   report.sah_cost = statistics.cost;
+  if (rest) rest->set_built(statistics.cost, structure->refit_bytes());
   report.tree_hash = structure->hash();
   report.instruction_set = structure->instruction_set();
 }

@@ -23,6 +23,7 @@ struct StructureInput {
   std::span<const Geometry> geometries;  ///< outlives the structure
   std::vector<Reference> references;     ///< of whole primitives, or of pieces where a splitter came first
   bool is_split = false;                 ///< some primitive has more than one reference
+  bool refittable = false;               ///< what Structure::refit() needs is to be kept
   WorkLimit limit;                       ///< checked now and then
   HeldBytes held;                        ///< of the references
 };
@@ -61,6 +62,8 @@ class Structure {
   /// Makes every box anew around what moved. Throws Error(invalid_option) where that cannot be done; see
   /// LayoutEntry::refits.
   virtual RefitOutcome refit(const Fragments& fragments);
+  /// That it keeps for refits.
+  virtual size_t refit_bytes() const { return 0; }
 };
 
 /// Counted over visit_nodes().

@@ -76,7 +76,7 @@ inline constexpr LayoutEntry kBvh4Layout = {
     TriangleLeaf::kMost,
     make_bvh4_structure,
     true,
-    false,
+    true,
     kWideBytes<4>};
 inline constexpr LayoutEntry kBvh8Layout = {
     "bvh8",
@@ -86,7 +86,7 @@ inline constexpr LayoutEntry kBvh8Layout = {
     TriangleLeaf::kMost,
     make_bvh8_structure,
     true,
-    false,
+    true,
     kWideBytes<8>};
 
 std::unique_ptr<Structure> make_late_split_structure(Bvh bvh, const StructureInput& input, const OptionValues& options);

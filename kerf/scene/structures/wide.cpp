@@ -1,3 +1,4 @@
+#include "kerf/layout/wide_refit.h"
 #include "kerf/scene/structures/all.h"
 #include "kerf/trace/trace_wide.h"
 
@@ -9,7 +10,8 @@ class WideStructure : public Structure {
  public:
   WideStructure(const Bvh& bvh, const StructureInput& input, const WideCosts& costs)
       : kernels_(wide_kernels<kWidth>()) {
-    tracer_.layout = make_wide_bvh<kWidth>(bvh, input.geometries, costs);
+    LeafNumbers* numbers = input.refittable && input.is_split ? &numbers_ : nullptr;
+    tracer_.layout = make_wide_bvh<kWidth>(bvh, input.geometries, costs, numbers);
     tracer_.geometries = input.geometries;
   }
 
@@ -26,6 +28,11 @@ class WideStructure : public Structure {
     if (!tracer_.layout.is_empty()) visit_child(tracer_.layout.root, tracer_.layout.bounds, 0, visit);
   }
 
+  RefitOutcome refit(const Fragments& fragments) override {
+    return kerf::refit(tracer_.layout, numbers_, fragments, tracer_.geometries);
+  }
+  size_t refit_bytes() const override { return numbers_.bytes(); }
+
  private:
   void visit_child(WideChild child, const Box3f& bounds, uint32_t depth,
                    const std::function<void(const NodeView&)>& visit) const {
@@ -40,6 +47,7 @@ class WideStructure : public Structure {
 
   WideKernels kernels_;
   WideTracer<kWidth> tracer_;
+  LeafNumbers numbers_;
 };
 
 template <uint32_t kWidth>
