@@ -96,6 +96,10 @@ class Check {
  private:
   void visit(WideChild child, const Box3f& box, uint32_t depth) {
     if (!fault_.empty()) return;
+    if (depth > kMaxDepth) {
+      fault_ = "a path is too long";
+      return;
+    }
     if (child.is_leaf()) return visit_leaf(child, box);
     const uint32_t number = child.number();
     const std::string name = "node " + std::to_string(number);
@@ -103,8 +107,6 @@ class Check {
       fault_ = name + " is not there";
     else if (is_reached_[number])
       fault_ = name + " is reached twice";
-    else if (depth > kMaxDepth)
-      fault_ = name + " lies too deep";
     if (!fault_.empty()) return;
     is_reached_[number] = true;
     ++reached_;
