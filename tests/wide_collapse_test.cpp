@@ -185,6 +185,21 @@ TEST(WideTree, ReferencesOfOnePrimitiveInALeafStandOnce) {
   EXPECT_EQ(layout.triangles(layout.root).triangle(1).a, (Vec3f{2, 0, 0}));
 }
 
+TEST(WideTree, ATriangleWithoutAreaIsWrittenAsAPoint) {
+  const std::vector<Vec3f> vertices = {{0.1F, 0.2F, 0.3F}, {0.2F, 0.4F, 0.6F}, {0.4F, 0.8F, 1.2F}, {1, 0, 0}};
+  const std::vector<TriangleCorners> triangles = {{0, 1, 2}, {0, 1, 3}};
+  const Geometry geometry{TriangleMesh{std::span<const Vec3f>(vertices), std::span<const TriangleCorners>(triangles)}};
+  const LeafSlot slots[] = {{0, 0}, {0, 1}};
+  std::vector<LeafUnit> units(TriangleLeaf::units(2));
+  write_triangle_leaf(slots, {&geometry, 1}, units.data());
+  const TriangleLeaf leaf{units[0].floats(), 2};
+  EXPECT_EQ(leaf.triangle(0).a, vertices[0]);
+  EXPECT_EQ(leaf.triangle(0).b, vertices[0]);
+  EXPECT_EQ(leaf.triangle(0).c, vertices[0]);
+  EXPECT_EQ(leaf.triangle(1).c, vertices[3]);
+  EXPECT_EQ(leaf.slot(1), slots[1]);
+}
+
 TEST(WideTree, AnyNumberOfThreadsMakesTheSame) {
   const RandomTriangles triangles(kManyThings);
   const Geometry geometry = triangles.geometry();

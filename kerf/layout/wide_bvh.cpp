@@ -103,11 +103,10 @@ class Check {
     if (child.is_leaf()) return visit_leaf(child, box);
     const uint32_t number = child.number();
     const std::string name = "node " + std::to_string(number);
-    if (number >= layout_.nodes.size())
-      fault_ = name + " is not there";
-    else if (is_reached_[number])
-      fault_ = name + " is reached twice";
-    if (!fault_.empty()) return;
+    if (number >= layout_.nodes.size() || is_reached_[number]) {
+      fault_ = name + (number >= layout_.nodes.size() ? " is not there" : " is reached twice");
+      return;
+    }
     is_reached_[number] = true;
     ++reached_;
     const WideNode<kWidth>& node = layout_.nodes[number];
