@@ -127,12 +127,18 @@ class Check {
   void visit_leaf(WideChild child, const Box3f& box) {
     const std::string name = "the leaf at unit " + std::to_string(child.number());
     const bool is_other = child.kind() == WideChild::kSlots;
-    if (child.number() != units_ || (!is_other && child.kind() > TriangleLeaf::kMost)) {
+    const size_t end = layout_.leaves.size() - TriangleLeaf::kPadding;
+    bool is_right = child.number() == units_ && units_ < end && (is_other || child.kind() <= TriangleLeaf::kMost);
+    if (is_right) {
+      const size_t count = is_other ? layout_.slot_count(child) : child.kind();
+      units_ += is_other ? slots_units(count) : TriangleLeaf::units(count);
+      is_right = units_ <= end;
+    }
+    if (!is_right) {
       fault_ = name + " is not where it should be";
       return;
     }
     const std::vector<LeafSlot> slots = layout_.slots(child);
-    units_ += is_other ? slots_units(slots.size()) : TriangleLeaf::units(slots.size());
     for (const LeafSlot& slot : slots) {
       if (slot.geometry() >= geometries_.size() || slot.primitive >= primitive_count(geometries_[slot.geometry()])) {
         fault_ = name + " names no primitive";
@@ -166,7 +172,7 @@ template <uint32_t kWidth>
 std::vector<LeafSlot> WideBvh<kWidth>::slots(WideChild leaf) const {
   const LeafUnit* unit = &leaves[leaf.number()];
   const bool is_other = leaf.kind() == WideChild::kSlots;
-  const size_t count = is_other ? std::bit_cast<uint32_t>(unit->values[0]) : leaf.kind();
+  const size_t count = is_other ? slot_count(leaf) : leaf.kind();
   std::vector<LeafSlot> slots(count);
   const float* from = is_other ? unit[1].values : unit->values + 9 * count;
   std::memcpy(static_cast<void*>(slots.data()), from, count * sizeof(LeafSlot));

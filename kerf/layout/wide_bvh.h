@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 
 #include "kerf/base/line_array.h"
@@ -59,6 +60,8 @@ struct WideBvh {
   size_t bytes() const { return nodes.bytes() + leaves.bytes(); }
 
   TriangleLeaf triangles(WideChild leaf) const { return {leaves[leaf.number()].floats(), leaf.kind()}; }
+  /// Of a leaf of kSlots.
+  uint32_t slot_count(WideChild leaf) const { return std::bit_cast<uint32_t>(leaves[leaf.number()].values[0]); }
   /// The slots of a leaf of any kind.
   std::vector<LeafSlot> slots(WideChild leaf) const;
 };
