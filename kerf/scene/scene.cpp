@@ -27,6 +27,8 @@ constexpr TraceTable kNotBuilt = {
     [](const void*, const Ray&, TraceCounts&) -> bool { refuse_not_built(); },
     [](const void*, std::span<const Ray>, std::span<Hit>) { refuse_not_built(); },
     [](const void*, std::span<const Ray>, std::span<Hit>, TraceCounts&) { refuse_not_built(); },
+    [](const void*, std::span<const Ray>, std::span<uint8_t>) { refuse_not_built(); },
+    [](const void*, std::span<const Ray>, std::span<uint8_t>, TraceCounts&) { refuse_not_built(); },
 };
 
 // How long stages take, about, in shares of each other.
@@ -74,12 +76,18 @@ void check_lengths(std::span<const Ray> rays, std::span<Result> results) {
               std::to_string(rays.size()) + " rays, but room for " + std::to_string(results.size()) + " results");
 }
 
+/// Rays that a thread takes at once: many, because batches gain from that, but some stretches for each thread.
+size_t stretch_of(size_t rays) {
+  constexpr size_t kLeast = 512, kMost = 4096, kForEach = 4;
+  return std::clamp(rays / (kForEach * static_cast<size_t>(thread_count())), kLeast, kMost);
+}
+
 /// query(begin, end) on stretches of the rays.
 template <class Result, class F>
 void run_batch(std::span<const Ray> rays, std::span<Result> results, int threads, F&& query) {
   check_lengths(rays, results);
   if (threads == 1) return query(0, rays.size());
-  with_threads(threads, [&] { parallel_for(rays.size(), 1024, query); });
+  with_threads(threads, [&] { parallel_for(rays.size(), stretch_of(rays.size()), query); });
 }
 
 /// The options of a builder or optimiser, with leaves as small as the layout needs them.
@@ -350,13 +358,18 @@ void Scene::closest_hit(std::span<const Ray> rays, std::span<Hit> hits, int thre
 
 void Scene::any_hit(std::span<const Ray> rays, std::span<uint8_t> hits, int threads) const {
   run_batch(rays, hits, threads, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) hits[i] = static_cast<uint8_t>(any_hit(rays[i]));
+    table_->any_batch(data_, rays.subspan(begin, end - begin), hits.subspan(begin, end - begin));
   });
 }
 
 void Scene::closest_hit(std::span<const Ray> rays, std::span<Hit> hits, TraceCounts& counts) const {
   check_lengths(rays, hits);
   table_->closest_batch_counted(data_, rays, hits, counts);
+}
+
+void Scene::any_hit(std::span<const Ray> rays, std::span<uint8_t> hits, TraceCounts& counts) const {
+  check_lengths(rays, hits);
+  table_->any_batch_counted(data_, rays, hits, counts);
 }
 
 }  // namespace kerf

@@ -132,6 +132,7 @@ class Scene {
   void any_hit(std::span<const Ray> rays, std::span<uint8_t> hits, int threads = 0) const;
   /// On the calling thread, and adds the work done to `counts`.
   void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, TraceCounts& counts) const;
+  void any_hit(std::span<const Ray> rays, std::span<uint8_t> hits, TraceCounts& counts) const;
 
  private:
   struct Added;
