@@ -32,7 +32,7 @@ FAULTS = [
     Fault("lists of rays beyond their room", "kerf/trace/wide_stream.h",
           "task.count > 1 && task.free + 2 * kWidth * task.count + StreamMemory::kPadding <= StreamMemory::kListed",
           "task.count > 1", "batch_test"),
-    Fault("columns of hits from the start", "kerf/scene/scene.cpp",
+    Fault("columns of hits from the start", "kerf/scene/scene_batch.cpp",
           "hits.set(first + i, found[i]);", "hits.set(first * 0 + i, found[i]);", "batch_test"),
     Fault("a skip pointer one node short", "kerf/layout/skip_pointer.cpp",
           ".first = place;", ".first = place - 1;", "layouts_test"),
