@@ -256,7 +256,9 @@ template <uint32_t kWidth, class Result, class Single>
 bool trace_streams(const WideTracer<kWidth>& tracer, std::span<const Ray> rays, std::span<Result> results,
                    const Single& single) {
   constexpr size_t kFewest = 32;
-  if (rays.size() < kFewest || tracer.layout.root.is_leaf() || tracer.layout.is_empty()) return false;
+  // Narrower vectors compress by tables, which takes longer than streams save.
+  constexpr bool kCompresses = hn::MaxLanes(hn::CappedTag<uint32_t, 16>()) == 16;
+  if (!kCompresses || rays.size() < kFewest || tracer.layout.root.is_leaf() || tracer.layout.is_empty()) return false;
   StreamMemory memory;
   if (!memory.is_there()) return false;
   const StandardFloat standard;
