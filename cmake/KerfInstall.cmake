@@ -15,7 +15,7 @@ function(kerf_install target set)
     # about Embree need Embree's.
     # The folders within kerf/io are the insides of its readers, kerf/study/report those of the page.
     install(DIRECTORY kerf/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kerf FILES_MATCHING PATTERN "*.h"
-      PATTERN simd.h EXCLUDE PATTERN embree_calls.h EXCLUDE PATTERN embree_pass.h EXCLUDE
+      PATTERN simd.h EXCLUDE PATTERN wide_stream.h EXCLUDE PATTERN embree_calls.h EXCLUDE PATTERN embree_pass.h EXCLUDE
       REGEX "kerf/(io/[a-z]+|study/report)$" EXCLUDE)
   endforeach()
 endfunction()

@@ -28,6 +28,8 @@ constexpr TraceTable kNotBuilt = {
     [](const void*, const Ray&, TraceCounts&) -> bool { refuse_not_built(); },
     [](const void*, std::span<const Ray>, std::span<Hit>) { refuse_not_built(); },
     [](const void*, std::span<const Ray>, std::span<Hit>, TraceCounts&) { refuse_not_built(); },
+    [](const void*, std::span<const Ray>, std::span<uint8_t>) { refuse_not_built(); },
+    [](const void*, std::span<const Ray>, std::span<uint8_t>, TraceCounts&) { refuse_not_built(); },
 };
 
 // How long stages take, about, in shares of each other.
@@ -67,21 +69,6 @@ class Stages {
   double all_, begun_ = 0;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-template <class Result>
-void check_lengths(std::span<const Ray> rays, std::span<Result> results) {
-  if (rays.size() == results.size()) return;
-  throw Error(ErrorCode::invalid_argument, "batch",
-              std::to_string(rays.size()) + " rays, but room for " + std::to_string(results.size()) + " results");
-}
-
-/// query(begin, end) on stretches of the rays.
-template <class Result, class F>
-void run_batch(std::span<const Ray> rays, std::span<Result> results, int threads, F&& query) {
-  check_lengths(rays, results);
-  if (threads == 1) return query(0, rays.size());
-  with_threads(threads, [&] { parallel_for(rays.size(), 1024, query); });
-}
 
 /// The options of a builder or optimiser, with leaves as small as the layout needs them.
 OptionValues options_for(const Stage& stage, const LayoutEntry& layout) {
@@ -343,23 +330,6 @@ Vec3f Scene::normal(const Hit& hit) const {
   if (built_ == nullptr) refuse_not_built();
   const StandardFloat standard;
   return hit ? unit_normal(built_->geometries[hit.geometry], hit.primitive, hit.u, hit.v) : Vec3f{};
-}
-
-void Scene::closest_hit(std::span<const Ray> rays, std::span<Hit> hits, int threads) const {
-  run_batch(rays, hits, threads, [&](size_t begin, size_t end) {
-    table_->closest_batch(data_, rays.subspan(begin, end - begin), hits.subspan(begin, end - begin));
-  });
-}
-
-void Scene::any_hit(std::span<const Ray> rays, std::span<uint8_t> hits, int threads) const {
-  run_batch(rays, hits, threads, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) hits[i] = static_cast<uint8_t>(any_hit(rays[i]));
-  });
-}
-
-void Scene::closest_hit(std::span<const Ray> rays, std::span<Hit> hits, TraceCounts& counts) const {
-  check_lengths(rays, hits);
-  table_->closest_batch_counted(data_, rays, hits, counts);
 }
 
 }  // namespace kerf

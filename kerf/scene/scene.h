@@ -9,6 +9,7 @@
 #include "kerf/geometry/geometry.h"
 #include "kerf/geometry/hit.h"
 #include "kerf/geometry/ray.h"
+#include "kerf/geometry/ray_columns.h"
 #include "kerf/references/split_result.h"
 #include "kerf/scene/memory_need.h"
 #include "kerf/scene/presets.h"
@@ -132,8 +133,12 @@ class Scene {
   /// Throws Error(invalid_argument) if the lengths differ.
   void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, int threads = 0) const;
   void any_hit(std::span<const Ray> rays, std::span<uint8_t> hits, int threads = 0) const;
+  /// The same for rays and hits in columns. Throws Error(invalid_argument) that names the first of another length.
+  void closest_hit(const RayColumns& rays, const HitColumns& hits, int threads = 0) const;
+  void any_hit(const RayColumns& rays, std::span<uint8_t> hits, int threads = 0) const;
   /// On the calling thread, and adds the work done to `counts`.
   void closest_hit(std::span<const Ray> rays, std::span<Hit> hits, TraceCounts& counts) const;
+  void any_hit(std::span<const Ray> rays, std::span<uint8_t> hits, TraceCounts& counts) const;
 
  private:
   struct Added;

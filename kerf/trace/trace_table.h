@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "kerf/geometry/hit.h"
@@ -47,6 +48,9 @@ struct TraceTable {
   /// One hit for each ray, the spans of equal length.
   void (*closest_batch)(const void* data, std::span<const Ray> rays, std::span<Hit> hits);
   void (*closest_batch_counted)(const void* data, std::span<const Ray> rays, std::span<Hit> hits, TraceCounts& counts);
+  /// For each ray whether it hits anything: 1 or 0.
+  void (*any_batch)(const void* data, std::span<const Ray> rays, std::span<uint8_t> hits);
+  void (*any_batch_counted)(const void* data, std::span<const Ray> rays, std::span<uint8_t> hits, TraceCounts& counts);
 };
 
 namespace detail {
@@ -62,13 +66,15 @@ decltype(auto) tracer_at(const void* data) {
 }
 
 /// A tracer that does better with many rays at once has `template <class Counts> void trace_batch(std::span<const Ray>,
-/// std::span<Hit>, Counts&) const`.
-template <class Tracer, class Counts>
-void trace_batch(const Tracer& tracer, std::span<const Ray> rays, std::span<Hit> hits, Counts& counts) {
-  if constexpr (requires { tracer.template trace_batch<Counts>(rays, hits, counts); }) {
-    tracer.template trace_batch<Counts>(rays, hits, counts);
+/// std::span<Result>, Counts&) const`, where Result is Hit for the closest or uint8_t for any, or both.
+template <class Tracer, class Result, class Counts>
+void trace_batch(const Tracer& tracer, std::span<const Ray> rays, std::span<Result> results, Counts& counts) {
+  if constexpr (requires { tracer.trace_batch(rays, results, counts); }) {
+    tracer.trace_batch(rays, results, counts);
+  } else if constexpr (std::is_same_v<Result, Hit>) {
+    for (size_t i = 0; i < rays.size(); ++i) results[i] = tracer.template trace<false>(rays[i], counts);
   } else {
-    for (size_t i = 0; i < rays.size(); ++i) hits[i] = tracer.template trace<false>(rays[i], counts);
+    for (size_t i = 0; i < rays.size(); ++i) results[i] = tracer.template trace<true>(rays[i], counts) ? 1 : 0;
   }
 }
 
@@ -97,6 +103,13 @@ inline constexpr TraceTable kTraceTable = {
       detail::trace_batch(detail::tracer_at<Tracer>(data), rays, hits, counts);
     },
     [](const void* data, std::span<const Ray> rays, std::span<Hit> hits, TraceCounts& counts) {
+      detail::trace_batch(detail::tracer_at<Tracer>(data), rays, hits, counts);
+    },
+    [](const void* data, std::span<const Ray> rays, std::span<uint8_t> hits) {
+      NoCounts counts;
+      detail::trace_batch(detail::tracer_at<Tracer>(data), rays, hits, counts);
+    },
+    [](const void* data, std::span<const Ray> rays, std::span<uint8_t> hits, TraceCounts& counts) {
       detail::trace_batch(detail::tracer_at<Tracer>(data), rays, hits, counts);
     },
 };

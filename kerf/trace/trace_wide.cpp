@@ -7,6 +7,7 @@
 #include "kerf/base/instruction_set.h"
 #include "kerf/geometry/ray_triangle.h"
 #include "kerf/trace/leaf.h"
+#include "kerf/trace/stream_memory.h"
 #include "kerf/trace/wide_ray.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -207,12 +208,12 @@ class Walk {
   Walk(const WideTracer<kWidth>& tracer, const Ray& ray, const WideRay& wide, Hit& best, Counts& counts)
       : tracer_(tracer), ray_(ray), wide_(wide), best_(best), counts_(counts), boxes_(wide), leaves_(wide) {}
 
-  HWY_INLINE void run() {
+  HWY_INLINE void run(WideChild from) {
     constexpr uint32_t kMostWaiting = (kWidth - 1) * kMaxDepth;  // all children but one of each node above
     uint64_t waiting[kMostWaiting + kWidth];
     uint64_t* top = waiting;
     const WideNode<kWidth>* const nodes = tracer_.layout.nodes.data();
-    uint64_t current = key(tracer_.layout.root, ray_.t_min);
+    uint64_t current = key(from, ray_.t_min);
     while (true) {
       counts_.count_nodes(1);
       const WideChild child{static_cast<uint32_t>(current)};
@@ -256,6 +257,24 @@ class Walk {
     }
   }
 
+  /// The triangles of `found`, exactly. Whether the walk is over.
+  static HWY_NOINLINE bool test_triangles(const WideTracer<kWidth>& tracer, const Ray& ray, const WideRay& wide,
+                                          Hit& best, const TriangleLeaf& triangles, uint32_t found) {
+    const ExactTest exact(ray, wide);
+    for (; found != 0; found &= found - 1) {
+      const auto i = static_cast<uint32_t>(std::countr_zero(found));
+      Crossing crossing;
+      if (!exact.hits(triangles, i, wide, best.t, crossing)) continue;
+      const LeafSlot slot = triangles.slot(i);
+      if ((tracer.geometries[slot.geometry()].mask & ray.mask) == 0) continue;
+      const Hit hit{crossing.t, crossing.u, crossing.v, slot.primitive, slot.geometry(), kNone};
+      if (best && !closer(hit, best)) continue;
+      best = hit;
+      if (kAny) return true;
+    }
+    return false;
+  }
+
  private:
   /// Nearer first as numbers, while entries are not negative; below that only
   /// the order suffers.
@@ -294,23 +313,7 @@ class Walk {
       for (const LeafSlot& slot : tracer_.layout.slots(leaf)) counts_.count_primitives(std::span(&slot, 1));
     }
     const uint32_t found = leaves_.may_hit(triangles);
-    return found != 0 && test_triangles(triangles, found);
-  }
-
-  HWY_NOINLINE bool test_triangles(const TriangleLeaf& triangles, uint32_t found) {
-    const ExactTest exact(ray_, wide_);
-    for (; found != 0; found &= found - 1) {
-      const auto i = static_cast<uint32_t>(std::countr_zero(found));
-      Crossing crossing;
-      if (!exact.hits(triangles, i, wide_, best_.t, crossing)) continue;
-      const LeafSlot slot = triangles.slot(i);
-      if ((tracer_.geometries[slot.geometry()].mask & ray_.mask) == 0) continue;
-      const Hit hit{crossing.t, crossing.u, crossing.v, slot.primitive, slot.geometry(), kNone};
-      if (best_ && !closer(hit, best_)) continue;
-      best_ = hit;
-      if (kAny) return true;
-    }
-    return false;
+    return found != 0 && test_triangles(tracer_, ray_, wide_, best_, triangles, found);
   }
 
   HWY_NOINLINE bool test_slots(WideChild leaf) {
@@ -329,6 +332,8 @@ class Walk {
   const BoxTests<kWidth, kFused> boxes_;
   const LeafTests leaves_;
 };
+
+#include "kerf/trace/wide_stream.h"
 
 template <uint32_t kWidth>
 struct Kernel {
@@ -350,11 +355,19 @@ struct Kernel {
     counts.count_boxes(1);
     if (!wide.enters(lower, upper)) return {};
     if (wide.is_fused) {
-      Walk<kWidth, true, kAny, Counts>(tracer, ray, wide, best, counts).run();
+      Walk<kWidth, true, kAny, Counts>(tracer, ray, wide, best, counts).run(tracer.layout.root);
     } else {
-      Walk<kWidth, false, kAny, Counts>(tracer, ray, wide, best, counts).run();
+      Walk<kWidth, false, kAny, Counts>(tracer, ray, wide, best, counts).run(tracer.layout.root);
     }
     return finished(best);
+  }
+
+  /// Counts are those of single rays.
+  template <class Result, class Counts>
+  void trace_batch(std::span<const Ray> rays, std::span<Result> results, Counts& counts) const {
+    const auto single = [&](const Ray& ray) { return trace<!std::is_same_v<Result, Hit>>(ray, counts); };
+    if (!Counts::kCounts && trace_streams(tracer, rays, results, single)) return;
+    for (size_t i = 0; i < rays.size(); ++i) results[i] = result_of<Result>(single(rays[i]));
   }
 };
 
