@@ -166,9 +166,9 @@ void run_under_limit(const Pipeline& pipeline, size_t limited, const WorkLimit& 
     } else if (const auto* optimiser = std::get_if<const OptimiserEntry*>(&entry->entry)) {
       bvh = (*optimiser)->optimise(bvh, options, allowed);
     } else if (const auto* layout = std::get_if<const LayoutEntry*>(&entry->entry)) {
-      (*layout)->make(bvh, {geometries, {}, false, allowed}, options);
+      (*layout)->make(bvh, {geometries, {}, false, false, allowed}, options);
     } else {
-      std::get<const StructureEntry*>(entry->entry)->build({geometries, references, false, allowed}, options);
+      std::get<const StructureEntry*>(entry->entry)->build({geometries, references, false, false, allowed}, options);
     }
   }
 }

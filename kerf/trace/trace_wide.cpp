@@ -34,11 +34,10 @@ struct BoxTests {
   using V = hn::Vec<Lanes>;
 
   V inverse_x, inverse_y, inverse_z;
-  V near_x, near_y, near_z, far_x, far_y,
-      far_z;  ///< fused: what is added to the product; else the moved origin
+  /// Fused: what is added to the product; else the moved origin.
+  V near_x, near_y, near_z, far_x, far_y, far_z;
   V t_min;
-  uint32_t row_x, row_y, row_z;  ///< where a node's near sides begin; the far
-                                 ///< ones begin at that ^ kWidth
+  uint32_t row_x, row_y, row_z;  ///< where a node's near sides begin; the far ones begin at that ^ kWidth
 
   explicit BoxTests(const WideRay& ray)
       : inverse_x(all(ray.inverse[0])),
@@ -99,10 +98,7 @@ struct LeafTests {
         ky(ray.ky),
         kz(ray.kz) {}
 
-  /// The triangles that the ray may hit, as bits. One bound on the error for
-  /// all: the ray enters the leaf's box, at `entry` at the earliest, so each
-  /// corner is within the extent of the box around all triangles of a point of
-  /// the ray along each axis, and within twice that in the sheared space.
+  /// The triangles that the ray may hit, as bits; those left out it surely misses.
   HWY_INLINE uint32_t may_hit(const TriangleLeaf& leaf) const {
     const Lanes d;
     const float* const xs = leaf.column(0, 0) + size_t{kx} * leaf.count;
@@ -143,16 +139,14 @@ struct LeafTests {
     // the other as it is.
     const auto error = hn::MulAdd(hn::Mul(s, hn::Add(s, depth)), hn::Set(d, 0x1p-19F), hn::Set(d, 0x1p-120F));
     const auto low = hn::Min(hn::Min(u, v), w), high = hn::Max(hn::Max(u, v), w);
-    // What is not a number counts for neither: Min and Max return one of their
-    // operands.
+    // What is not a number counts for neither: Min and Max return one of their operands.
     const auto outside = hn::And(hn::Lt(low, hn::Neg(error)), hn::Gt(high, error));
     return bits_of(d, outside) ^ ((1U << hn::MaxLanes(d)) - 1);
   }
 };
 
-/// intersect() of triangles that a ray may hit, the three corners side by side;
-/// the same operations, so the same bits. Four doubles as a language extension,
-/// which every target has in some form.
+/// intersect() of triangles that a ray may hit, the three corners side by side; the same operations, so the same bits.
+/// Four doubles as a language extension, which every target has in some form.
 class ExactTest {
  public:
   explicit ExactTest(const Ray& ray, const WideRay& wide)
@@ -276,8 +270,7 @@ class Walk {
   }
 
  private:
-  /// Nearer first as numbers, while entries are not negative; below that only
-  /// the order suffers.
+  /// Nearer first as numbers, while entries are not negative; below that only the order suffers.
   static HWY_INLINE uint64_t key(WideChild child, float entry) {
     return uint64_t{std::bit_cast<uint32_t>(entry)} << 32 | child.word;
   }
