@@ -223,7 +223,7 @@ class WatchedBuild {
   std::mutex mutex_;  // of what follows
   std::condition_variable news_;
   double share_ = 0;
-  std::string what_;
+  std::string what_ = "begin";
   bool is_done_ = false;
   std::exception_ptr failure_;
   std::thread thread_;

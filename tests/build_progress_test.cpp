@@ -77,6 +77,7 @@ TEST_P(EveryPipeline, TellsHowFarItIs) {
   EXPECT_EQ(listener.shares.back(), 1);
   EXPECT_TRUE(std::is_sorted(listener.shares.begin(), listener.shares.end()));
   EXPECT_TRUE(listener.is_alone);
+  for (const std::string& what : listener.words) EXPECT_FALSE(what.empty());
   EXPECT_LE(static_cast<double>(listener.shares.size()), 4 + seconds * 2 * 20);
 }
 

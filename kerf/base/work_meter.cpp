@@ -45,7 +45,7 @@ bool WorkMeter::tell(bool at_once) {
   {
     const std::lock_guard lock(mutex_);
     done = told_ = std::max(told_, share());
-    what = what_;
+    what = what_.empty() ? "begin" : what_;  // before the first stage
   }
   bool is_wanted = false;
   try {
