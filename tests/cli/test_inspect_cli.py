@@ -87,3 +87,15 @@ def test_mistakes_are_named(words, code, sentence):
 def test_no_trial_and_no_names():
     result = kerf("floor.ply", *QUICK, "--trial", "none", "--top", "0")
     assert result.returncode == 0 and "Tried" not in result.stdout and "test most" not in result.stdout
+
+
+def test_an_instruction_set_can_be_asked_for(monkeypatch):
+    wide = [*QUICK[:-1], "binned_sah+bvh8"]
+    found = {}
+    for name in ("scalar", "", "avx3"):
+        monkeypatch.setenv("KERF_ISA", name)
+        found[name] = kerf("floor.ply", *wide, "--json", "-", "--quiet")
+    assert json.loads(found["scalar"].stdout)["scene"]["instruction_set"] == "scalar"
+    assert found[""].returncode == 0, "empty: none is asked for"
+    assert found["avx3"].returncode != 0
+    assert "no instruction set 'avx3'" in found["avx3"].stderr and not found["avx3"].stdout

@@ -348,6 +348,7 @@ def test_report_bounds_menu_version():
     scene = kerf.Scene(SQUARE, FACES, structure="early_split( budget=2 )+binned_sah")
     report = scene.report
     assert report["structure"] == "early_split(budget=2)+binned_sah"
+    assert report["instruction_set"] == "scalar"
     assert report["primitives"] == 2 and report["references"] >= 2 and report["bytes"] > 0 and not report["capped"]
     assert set(report["seconds"]) == {"references", "split", "build", "optimise", "layout", "total"}
     assert scene.bounds.dtype == np.float32 and scene.bounds.tolist() == [[0, 0, 0], [4, 4, 0]]
