@@ -37,10 +37,16 @@ WorkLimit RowMeasure::limit() const {
   return limit;
 }
 
-WorkLimit RowMeasure::cancellation() const {
+std::optional<std::vector<StudyRays>> RowMeasure::make_rays(const Camera& camera, uint32_t width, uint32_t height,
+                                                            std::span<const RayKind> kinds) const {
   WorkLimit limit;
   limit.cancelled = options_.cancelled;
-  return limit;
+  try {
+    return make_study_rays(scene_, camera, width, height, kinds, options_.skip_invalid, limit);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::stopped) throw;
+    return std::nullopt;
+  }
 }
 
 std::unique_ptr<Scene> RowMeasure::built(const MeasuredRow& row, WorkMeter::Progress progress) const {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -54,8 +55,9 @@ class RowMeasure {
 
   /// From now on.
   WorkLimit limit() const;
-  /// No limit but that work can be cancelled.
-  WorkLimit cancellation() const;
+  /// make_study_rays(); nothing where it was cancelled.
+  std::optional<std::vector<StudyRays>> make_rays(const Camera& camera, uint32_t width, uint32_t height,
+                                                  std::span<const RayKind> kinds) const;
 
   /// `progress` as that of BuildOptions.
   void build(MeasuredRow& row, WorkMeter::Progress progress = nullptr) const;

@@ -80,13 +80,9 @@ class SplittingStudy {
   }
 
   void make_rays() {
-    try {
-      rays_ = make_study_rays(input_.description, input_.camera, options_.width, options_.height, options_.kinds,
-                              options_.skip_invalid, measure_.cancellation());
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::stopped) throw;
-      is_stopped_ = true;
-    }
+    auto made = measure_.make_rays(input_.camera, options_.width, options_.height, options_.kinds);
+    is_stopped_ = !made;
+    if (made) rays_ = std::move(*made);
     for (const StudyRays& rays : rays_) {
       result_.kinds.push_back(rays.kind);
       result_.ray_counts.push_back(rays.rays.size());

@@ -61,13 +61,9 @@ class Study {
       rays_ = options_.loaded;
       return;
     }
-    try {
-      made_ = make_study_rays(input_.description, input_.camera, options_.width, options_.height, options_.kinds,
-                              options_.skip_invalid, measure_.cancellation());
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::stopped) throw;
-      is_stopped_ = true;
-    }
+    auto made = measure_.make_rays(input_.camera, options_.width, options_.height, options_.kinds);
+    is_stopped_ = !made;
+    if (made) made_ = std::move(*made);
     rays_ = made_;
   }
 
