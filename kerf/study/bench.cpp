@@ -8,6 +8,7 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <utility>
 
 #include "kerf/base/error.h"
 #include "kerf/base/parallel.h"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "kerf/base/error.h"
 #include "kerf/render/render_scene.h"
