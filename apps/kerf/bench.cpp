@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 
@@ -53,13 +52,6 @@ int run_bench(const BenchArguments& a) {
   const bool is_complete = !interrupted();
   session.write();
   return is_complete ? kDone : kInterrupted;
-}
-
-/// Above 0; infinity is allowed, which CLI11's own check refuses.
-std::string positive(const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  return *end == '\0' && value > 0 ? "" : "it must be a number above 0, or inf";
 }
 
 void add_options(CLI::App& command, BenchArguments& a) {

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <vector>
@@ -91,13 +90,6 @@ int run_session(const StudyArguments& a, const std::string& command_line) {
 int run_study(const StudyArguments& a, const std::string& command_line) {
   check_words(a);
   return a.is_splitting ? run_session<SplittingSession>(a, command_line) : run_session<StudySession>(a, command_line);
-}
-
-/// Above 0; infinity is allowed, which CLI11's own check refuses.
-std::string positive(const std::string& text) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  return *end == '\0' && value > 0 ? "" : "it must be a number above 0, or inf";
 }
 
 void add_options(CLI::App& command, StudyArguments& a) {

@@ -226,4 +226,10 @@ void StudySession::write(const std::string& command_line) {
   for (const std::string& note : notes_) fmt::print(stderr, "kerf: note: {}\n", note);
 }
 
+std::string positive(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  return *end == '\0' && value > 0 ? "" : "it must be a number above 0, or inf";
+}
+
 }  // namespace kerf::app

@@ -81,4 +81,7 @@ class StudySession {
   size_t scene_ = 0, scenes_ = 1;
 };
 
+/// A check for CLI11: above 0; infinity is allowed, which its own check refuses.
+std::string positive(const std::string& text);
+
 }  // namespace kerf::app
