@@ -15,24 +15,10 @@
 #include "kerf/study/embree_text.h"
 #include "kerf/study/hit_verdict.h"
 #include "kerf/study/ray_order.h"
-#include "tests/support/random_scene.h"
+#include "tests/support/random_study.h"
 
 namespace kerf::test {
 namespace {
-
-StudyScene small_scene() {
-  const RandomTriangles random(1000);
-  Mesh mesh;
-  mesh.vertices = random.vertices;
-  for (const TriangleCorners& corners : random.triangles) mesh.triangles.push_back(corners);
-  StudyScene scene;
-  scene.name = "random";
-  scene.description.is_lit = false;
-  scene.description.materials.emplace_back();
-  scene.description.objects.push_back({std::move(mesh), 0, true, "random"});
-  scene.camera = {.eye = {0, 0, 40}, .look_at = {0, 0, 0}, .up = {0, 1, 0}, .fov = 40};
-  return scene;
-}
 
 /// A number of rays that fills no packet.
 BenchOptions quick() {
@@ -77,7 +63,7 @@ void expect_right_hits(const StudyScene& scene, const BenchScene& result, const 
 }
 
 TEST(Bench, EveryFeedFindsTheSame) {
-  const StudyScene scene = small_scene();
+  const StudyScene scene = random_study(1000);
   for (const int threads : {1, std::min(2, thread_count())}) {
     BenchOptions options = quick();
     options.threads = threads;
@@ -102,7 +88,7 @@ TEST(Bench, EveryFeedFindsTheSame) {
 
 TEST(Bench, WhatEmbreeSaysOfItself) {
   if (!has_embree()) GTEST_SKIP() << "Embree was not found";
-  const BenchScene result = bench(small_scene(), "straight", quick());
+  const BenchScene result = bench(random_study(1000), "straight", quick());
   for (const char* words : {"Embree ", "hugepages=1", "FTZ", "threads=1"}) {
     EXPECT_NE(result.rival.find(words), std::string::npos) << result.rival;
   }
@@ -122,7 +108,7 @@ TEST(Bench, WhatEmbreeSaysOfItself) {
 }
 
 TEST(Bench, TakesSpheresParallelogramsAndAnEmptyScene) {
-  StudyScene scene = small_scene();
+  StudyScene scene = random_study(1000);
   scene.description.objects.push_back({Sphere{{0, 0, 12}, 3}, 0, true, ""});
   scene.description.objects.push_back({Parallelogram{{-9, -9, 11}, {4, 0, 0}, {0, 4, 1}}, 0, true, ""});
   scene.description.objects.push_back({Sphere{{6, 6, 13}, 2}, 0, false, "hidden from the camera"});
@@ -139,14 +125,14 @@ TEST(Bench, TakesSpheresParallelogramsAndAnEmptyScene) {
 TEST(Bench, LimitsGiveRowsUp) {
   BenchOptions options = quick();
   options.limit_bytes = 1000;
-  for (const BenchRow& row : bench(small_scene(), "straight", options).rows) {
+  for (const BenchRow& row : bench(random_study(1000), "straight", options).rows) {
     EXPECT_FALSE(row.finished) << row.name();
     EXPECT_NE(row.why_not, "it was interrupted") << row.name();
     EXPECT_TRUE(row.runs.empty());
   }
   options = quick();
   options.rows = {"no_such_builder"};
-  EXPECT_THROW(bench(small_scene(), "straight", options), Error);
+  EXPECT_THROW(bench(random_study(1000), "straight", options), Error);
 }
 
 TEST(Bench, AnInterruptKeepsWhatIsMeasured) {
@@ -164,7 +150,7 @@ TEST(Bench, AnInterruptKeepsWhatIsMeasured) {
     if (traced == 20) cancelled = true;
     return !cancelled;
   };
-  const BenchScene result = bench(small_scene(), "straight", options);
+  const BenchScene result = bench(random_study(1000), "straight", options);
   ASSERT_TRUE(result.rows[0].finished) << result.rows[0].why_not;
   EXPECT_GE(result.rows[0].runs[0].seconds.size(), 1U);
   EXPECT_LT(result.rows[0].runs[0].seconds.size(), 30U);
@@ -175,7 +161,7 @@ TEST(Bench, AnInterruptKeepsWhatIsMeasured) {
     cancelled = what.find(": compare ") != std::string_view::npos;
     return !cancelled;
   };
-  for (const BenchRow& row : bench(small_scene(), "straight", options).rows) {
+  for (const BenchRow& row : bench(random_study(1000), "straight", options).rows) {
     EXPECT_FALSE(row.finished);
     EXPECT_EQ(row.why_not, "it was interrupted");
   }

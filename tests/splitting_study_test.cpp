@@ -10,28 +10,12 @@
 #include "kerf/render/render_scene.h"
 #include "kerf/study/splitting_goals.h"
 #include "kerf/study/turn.h"
-#include "tests/support/random_scene.h"
+#include "tests/support/random_study.h"
 
 namespace kerf::test {
 namespace {
 
 using Role = SplittingRole;
-
-StudyScene small_scene() {
-  const RandomTriangles random(1500);
-  Mesh mesh;
-  mesh.vertices = random.vertices;
-  for (const TriangleCorners& corners : random.triangles) {
-    mesh.triangles.push_back({corners[0], corners[1], corners[2]});
-  }
-  StudyScene scene;
-  scene.name = "random";
-  scene.description.is_lit = false;
-  scene.description.materials.emplace_back();
-  scene.description.objects.push_back({std::move(mesh), 0, true, "random"});
-  scene.camera = {.eye = {0, 0, 40}, .look_at = {0, 0, 0}, .up = {0, 1, 0}, .fov = 40};
-  return scene;
-}
 
 SplittingOptions quick() {
   SplittingOptions options;
@@ -42,7 +26,7 @@ SplittingOptions quick() {
 }
 
 TEST(SplittingStudy, CountsAreThoseOfTheScene) {
-  const StudyScene scene = small_scene();
+  const StudyScene scene = random_study(1500);
   const SplittingOptions options = quick();
   const SplittingScene result = study_splitting(scene, "straight", options);
   EXPECT_EQ(result.title(), "random");
@@ -78,7 +62,7 @@ TEST(SplittingStudy, CountsAreThoseOfTheScene) {
 }
 
 TEST(SplittingStudy, ChecksAreMade) {
-  const SplittingScene result = study_splitting(small_scene(), "straight", quick());
+  const SplittingScene result = study_splitting(random_study(1500), "straight", quick());
   EXPECT_EQ(result.variants.size(), 3U);
   ASSERT_FALSE(result.trees.empty());
   EXPECT_EQ(result.trees[0].threads, (std::vector<int>{1, 2, 7}));
@@ -100,7 +84,7 @@ TEST(SplittingStudy, WhatIsLeftOutSaysSo) {
   SplittingOptions options = quick();
   options.with_threads = false;
   options.limit_bytes = 100000;
-  const SplittingScene result = study_splitting(small_scene(), "x", options);
+  const SplittingScene result = study_splitting(random_study(1500), "x", options);
   EXPECT_TRUE(result.trees.empty());
   EXPECT_EQ(result.title(), "random turned x");
   EXPECT_GE(result.skipped.size(), 2U);
@@ -117,7 +101,7 @@ TEST(SplittingStudy, AnInterruptKeepsWhatIsFinished) {
     if (++steps == 5) cancelled = true;  // plain and auto are built and counted
     return !cancelled;
   };
-  const SplittingScene result = study_splitting(small_scene(), "straight", options);
+  const SplittingScene result = study_splitting(random_study(1500), "straight", options);
   EXPECT_TRUE(result.rows[0].finished);
   EXPECT_TRUE(result.rows[1].finished);
   for (size_t i = 2; i < result.rows.size(); ++i) {
@@ -128,7 +112,7 @@ TEST(SplittingStudy, AnInterruptKeepsWhatIsFinished) {
 }
 
 TEST(SplittingStudy, TakesAnEmptyScene) {
-  StudyScene scene = small_scene();
+  StudyScene scene = random_study(1500);
   scene.description.objects.clear();
   const SplittingScene result = study_splitting(scene, "straight", quick());
   EXPECT_TRUE(result.row(Role::plain)->finished);
@@ -137,7 +121,7 @@ TEST(SplittingStudy, TakesAnEmptyScene) {
 }
 
 TEST(Turn, ExchangedAndScaledScenesKeepTheirShape) {
-  StudyScene scene = small_scene();
+  StudyScene scene = random_study(1500);
   scene.description.objects.push_back({Sphere{{1, 2, 3}, 0.5F}, 0, true, ""});
   const SceneDescription large = scaled(scene.description, 1000), other = turned(scene.description, axes_exchanged());
   const auto& mesh = std::get<Mesh>(scene.description.objects[0].shape);
