@@ -193,17 +193,18 @@ class WatchedBuild {
     thread_.join();
   }
 
-  /// Returns when it is done. Throws what it throws, or a function of Python.
+  /// Returns when it is done. Throws what it throws, or a function of Python. Tells the beginning and the end however
+  /// short the build is.
   void wait() {
     constexpr std::chrono::milliseconds kTellEvery(50);
+    tell(0, "begin");
     for (bool is_done = false; !is_done;) {
       double share = 0;
       std::string what;
       {
         const py::gil_scoped_release release;
         std::unique_lock lock(mutex_);
-        news_.wait_for(lock, kTellEvery, [&] { return is_done_; });
-        is_done = is_done_;
+        is_done = news_.wait_for(lock, kTellEvery, [&] { return is_done_; });
         share = share_;
         what = what_;
       }
@@ -211,13 +212,17 @@ class WatchedBuild {
         thread_.join();
         if (failure_) std::rethrow_exception(failure_);
       }
-      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-      if (!progress_.is_none() && progress_(share, what).is(py::bool_(false))) cancelled_ = true;
+      tell(share, what);
     }
     if (cancelled_) throw Error(ErrorCode::stopped, "build", "it was cancelled");
   }
 
  private:
+  void tell(double share, const std::string& what) {
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (!progress_.is_none() && progress_(share, what).is(py::bool_(false))) cancelled_ = true;
+  }
+
   const py::object& progress_;
   std::atomic<bool> cancelled_ = false;
   std::mutex mutex_;  // of what follows
