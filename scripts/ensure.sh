@@ -351,12 +351,29 @@ counts() {
     END { print all - failed - skipped, failed + 0, skipped + 0 }'
 }
 
-# failed PRESET...: the names of the tests of the last run of each that did not pass.
+# failed PRESET...: the tests of the last run of each that did not pass, by name, and the last that each of them said.
 failed() {
   local preset
   for preset in "$@"; do
-    sed -n 's/.*<testcase name="\([^"]*\)".* status="fail".*/'"$preset"': \1/p' "$kerf_root/build/$preset/tests.xml" 2>/dev/null
-  done
+    awk -v preset="$preset" '
+      function tell(   i) {
+        print preset ": " name
+        for (i = said > 30 ? said - 29 : 1; i <= said; i++) print "    " line[i]
+      }
+      /<testcase / {
+        said = inside = 0
+        name = $0
+        sub(/.*<testcase name="/, "", name)
+        sub(/".*/, "", name)
+        is_bad = /status="fail"/
+        if (is_bad && /\/>[ \t]*$/) tell()
+      }
+      !is_bad { next }
+      /<system-out>/ { inside = 1; sub(/.*<system-out>/, "") }
+      inside { line[++said] = $0; sub(/<\/system-out>.*/, "", line[said]) }
+      /<\/system-out>/ { inside = 0 }
+      /<\/testcase>/ { tell(); is_bad = 0 }' "$kerf_root/build/$preset/tests.xml" 2>/dev/null
+  done | sed -e 's/&lt;/</g' -e 's/&gt;/>/g' -e 's/&quot;/"/g' -e 's/&apos;/'"'"'/g' -e 's/&amp;/\&/g'
 }
 
 closing_line() {
