@@ -1,5 +1,6 @@
 #include "kerf/layout/triangle_leaf.h"
 
+#include <bit>
 #include <variant>
 
 #include "kerf/geometry/ray_triangle.h"
@@ -19,6 +20,17 @@ void write_triangle_leaf(std::span<const LeafSlot> slots, std::span<const Geomet
     }
   }
   std::memcpy(data + 9 * count, slots.data(), count * sizeof(LeafSlot));
+}
+
+void write_slots(std::span<const LeafSlot> slots, LeafUnit* to) {
+  to->values[0] = std::bit_cast<float>(static_cast<uint32_t>(slots.size()));
+  std::memcpy(to + 1, slots.data(), slots.size_bytes());
+}
+
+std::vector<LeafSlot> read_slots(const LeafUnit* from) {
+  std::vector<LeafSlot> slots(std::bit_cast<uint32_t>(from->values[0]));
+  std::memcpy(static_cast<void*>(slots.data()), from + 1, slots.size() * sizeof(LeafSlot));
+  return slots;
 }
 
 }  // namespace kerf

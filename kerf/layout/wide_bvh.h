@@ -43,6 +43,9 @@ struct alignas(64) WideNode {
     }
   }
   bool has_child(uint32_t i) const { return sides[0][0][i] <= sides[0][1][i]; }
+
+  /// Of the first children; the others are none.
+  void set_bounds(std::span<const Box3f> boxes);
 };
 static_assert(sizeof(WideNode<4>) == 128 && sizeof(WideNode<8>) == 256);
 
@@ -51,6 +54,9 @@ static_assert(sizeof(WideNode<4>) == 128 && sizeof(WideNode<8>) == 256);
 /// triangles are copies: queries read none of the caller's vertices.
 template <uint32_t kWidth>
 struct WideBvh {
+  using Child = WideChild;
+  static constexpr uint32_t kChildren = kWidth;
+
   Box3f bounds;    ///< of the root
   WideChild root;  ///< an inner node or a single leaf; with no units: nothing to hit
   LineArray<WideNode<kWidth>> nodes;
@@ -64,6 +70,9 @@ struct WideBvh {
   uint32_t slot_count(WideChild leaf) const { return std::bit_cast<uint32_t>(leaves[leaf.number()].values[0]); }
   /// The slots of a leaf of any kind.
   std::vector<LeafSlot> slots(WideChild leaf) const;
+  /// Writes a leaf of triangles, as they are now, or of any primitives, from a unit on.
+  WideChild write_leaf(std::span<const LeafSlot> slots, bool is_triangles, std::span<const Geometry> geometries,
+                       size_t unit);
 };
 
 /// Primitives that stand in a leaf twice are kept once. Throws Error(too_large) above 2^28 nodes or 4 GB of

@@ -16,12 +16,14 @@ constexpr uint32_t kTaskDepth = 10;
 }  // namespace
 
 WideCollapse::WideCollapse(const Bvh& bvh, std::span<const Geometry> geometries, uint32_t width, const WideCosts& costs,
-                           uint32_t most)
+                           uint32_t most, LeafUnits leaf_units, const char* name)
     : bvh_(bvh),
       geometries_(geometries),
       width_(width),
       costs_(costs),
       most_(most),
+      leaf_units_(leaf_units),
+      name_(name),
       held_(bvh.nodes.size() * sizeof(Plan)) {
   assert(width >= 2 && width <= kMostChildren && most <= kMostNumbers);
   plans_.resize(bvh.nodes.size());
@@ -153,11 +155,17 @@ std::span<const LeafSlot> WideCollapse::leaf_slots(uint32_t node, FewSlots& few)
   return std::span(few).first(gather(node, few, 0));
 }
 
+size_t WideCollapse::units_of_leaf(uint32_t node) const {
+  if (!is_triangles(node)) return slots_units(bvh_.nodes[node].count);
+  if (leaf_units_ == nullptr) return TriangleLeaf::units(plans_[node].slots());
+  FewSlots few;
+  return leaf_units_(leaf_slots(node, few), geometries_);
+}
+
 void WideCollapse::measure(uint32_t node, uint32_t depth) {
   Plan& plan = plans_[node];
   if (plan.is_leaf()) {
-    const size_t units = plan.slots() > 0 ? TriangleLeaf::units(plan.slots()) : slots_units(bvh_.nodes[node].count);
-    plan.size.units = static_cast<uint32_t>(units);
+    plan.size.units = static_cast<uint32_t>(units_of_leaf(node));
     return;
   }
   Children all;
@@ -177,7 +185,7 @@ void WideCollapse::measure(uint32_t node, uint32_t depth) {
   }
   // Of eight children that are not too large each the sum fits its number.
   if (plan.size.nodes <= most_ && plan.size.units <= most_) return;
-  throw Error(ErrorCode::too_large, "bvh" + std::to_string(width_),
+  throw Error(ErrorCode::too_large, name_ + std::to_string(width_),
               std::to_string(bvh_.slots.size()) + " references are too many for it; bvh2 takes them");
 }
 

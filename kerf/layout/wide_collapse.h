@@ -22,10 +22,14 @@ class WideCollapse {
   /// Nodes and units that a layout's words can number.
   static constexpr uint32_t kMostNumbers = 1U << 28;
 
+  /// Units of a leaf of triangles.
+  using LeafUnits = size_t (*)(std::span<const LeafSlot> slots, std::span<const Geometry> geometries);
+
   /// The tree must have a node and outlive this. `width`: 2 to kMostChildren. Throws Error(too_large) where more than
-  /// `most` nodes or units of leaves would be needed.
+  /// `most` nodes or units of leaves would be needed. `leaf_units`: TriangleLeaf's where there is none; and how the
+  /// layout's name begins.
   WideCollapse(const Bvh& bvh, std::span<const Geometry> geometries, uint32_t width, const WideCosts& costs,
-               uint32_t most = kMostNumbers);
+               uint32_t most = kMostNumbers, LeafUnits leaf_units = nullptr, const char* name = "bvh");
 
   /// What a binary node that is the root of a wide subtree becomes: a leaf, of triangles only or of any primitives, or
   /// an inner node.
@@ -79,6 +83,7 @@ class WideCollapse {
   Costs solve_leaf(uint32_t node);
   Costs solve_inner(uint32_t node, const Costs& a, const Costs& b);
   void measure(uint32_t node, uint32_t depth);
+  size_t units_of_leaf(uint32_t node) const;
   uint32_t gather(uint32_t node, FewSlots& slots, uint32_t count) const;
   void collect(uint32_t node, uint32_t most, Children& children, uint32_t& count) const;
   bool are_triangles(uint32_t node) const;
@@ -88,6 +93,8 @@ class WideCollapse {
   uint32_t width_;
   WideCosts costs_;
   uint32_t most_;
+  LeafUnits leaf_units_;
+  const char* name_;
   double scale_;  ///< of areas: in shares of the root's
   double cost_ = 0;
   std::vector<Plan> plans_;

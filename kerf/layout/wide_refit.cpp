@@ -68,40 +68,47 @@ class Numbering {
   LimitWatch watch_;
 };
 
-template <uint32_t kWidth>
+template <class Layout>
 class Refit {
  public:
-  Refit(WideBvh<kWidth>& layout, const LeafNumbers& numbers, const Fragments& fragments,
+  using Child = typename Layout::Child;
+  static constexpr uint32_t kChildren = Layout::kChildren;
+
+  Refit(Layout& layout, const LeafNumbers& numbers, const Fragments& fragments,
         std::span<const Geometry> geometries)
       : layout_(layout), numbers_(numbers), fragments_(fragments), geometries_(geometries) {}
 
-  RefitOutcome visit(WideChild child, uint32_t depth) {
+  RefitOutcome visit(Child child, uint32_t depth) {
     return child.is_leaf() ? visit_leaf(child) : visit_node(layout_.nodes[child.number()], depth);
   }
 
  private:
-  RefitOutcome visit_node(WideNode<kWidth>& node, uint32_t depth) {
-    std::array<RefitOutcome, kWidth> below;
+  template <class Node>
+  RefitOutcome visit_node(Node& node, uint32_t depth) {
+    std::array<RefitOutcome, kChildren> below;
     const auto some = [&](uint32_t begin, uint32_t end) {
       for (uint32_t i = begin; i < end && node.has_child(i); ++i) below[i] = visit(node.child[i], depth + 1);
     };
     if (depth < kTaskDepth) {
-      parallel_invoke([&] { some(0, kWidth / 2); }, [&] { some(kWidth / 2, kWidth); });
+      parallel_invoke([&] { some(0, kChildren / 2); }, [&] { some(kChildren / 2, kChildren); });
     } else {
-      some(0, kWidth);
+      some(0, kChildren);
     }
     RefitOutcome all;
-    for (uint32_t i = 0; i < kWidth && node.has_child(i); ++i) {
+    std::array<Box3f, kChildren> boxes;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < kChildren && node.has_child(i); ++i) {
       all.bounds.extend(below[i].bounds);
       all.sums.nodes += below[i].sums.nodes;
       all.sums.parts += below[i].sums.parts;
-      node.set_bounds(i, below[i].bounds);
+      boxes[count++] = below[i].bounds;
     }
+    node.set_bounds(std::span(boxes).first(count));
     all.sums.nodes += half_area(all.bounds);
     return all;
   }
 
-  RefitOutcome visit_leaf(WideChild leaf) {
+  RefitOutcome visit_leaf(Child leaf) {
     const std::vector<LeafSlot> slots = layout_.slots(leaf);
     RefitOutcome all;
     const auto add = [&](size_t number, const LeafSlot& slot) {
@@ -121,12 +128,12 @@ class Refit {
         add(number & ~LeafNumbers::kLast, slot);
       } while ((number & LeafNumbers::kLast) == 0);
     }
-    if (leaf.kind() != WideChild::kSlots) write_triangle_leaf(slots, geometries_, &layout_.leaves[leaf.number()]);
+    if (leaf.kind() != Child::kSlots) layout_.write_leaf(slots, true, geometries_, leaf.number());
     all.sums.nodes = half_area(all.bounds) * static_cast<double>(slots.size());
     return all;
   }
 
-  WideBvh<kWidth>& layout_;
+  Layout& layout_;
   const LeafNumbers& numbers_;
   const Fragments& fragments_;
   std::span<const Geometry> geometries_;
@@ -136,16 +143,17 @@ class Refit {
 
 LeafNumbers number_leaves(const Bvh& bvh, const WideCollapse& collapse) { return Numbering(bvh, collapse).run(); }
 
-template <uint32_t kWidth>
-RefitOutcome refit(WideBvh<kWidth>& layout, const LeafNumbers& numbers, const Fragments& fragments,
+template <class Layout>
+RefitOutcome refit(Layout& layout, const LeafNumbers& numbers, const Fragments& fragments,
                    std::span<const Geometry> geometries) {
   if (layout.is_empty()) return {};
-  const RefitOutcome all = Refit<kWidth>(layout, numbers, fragments, geometries).visit(layout.root, 0);
+  const RefitOutcome all = Refit<Layout>(layout, numbers, fragments, geometries).visit(layout.root, 0);
   layout.bounds = all.bounds;
   return all;
 }
 
 template RefitOutcome refit(WideBvh<4>&, const LeafNumbers&, const Fragments&, std::span<const Geometry>);
 template RefitOutcome refit(WideBvh<8>&, const LeafNumbers&, const Fragments&, std::span<const Geometry>);
+template RefitOutcome refit(QuantisedBvh&, const LeafNumbers&, const Fragments&, std::span<const Geometry>);
 
 }  // namespace kerf

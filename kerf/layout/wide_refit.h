@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kerf/layout/quantised_bvh.h"
 #include "kerf/layout/wide_bvh.h"
 #include "kerf/layout/wide_collapse.h"
 #include "kerf/tree/fragments.h"
@@ -23,8 +24,9 @@ LeafNumbers number_leaves(const Bvh& bvh, const WideCollapse& collapse);
 
 /// Makes every box anew around what moved, and writes the moved triangles into the leaves. Parallel; the outcome does
 /// not depend on the number of threads.
-template <uint32_t kWidth>
-RefitOutcome refit(WideBvh<kWidth>& layout, const LeafNumbers& numbers, const Fragments& fragments,
+/// Layout: WideBvh<4>, WideBvh<8>, QuantisedBvh.
+template <class Layout>
+RefitOutcome refit(Layout& layout, const LeafNumbers& numbers, const Fragments& fragments,
                    std::span<const Geometry> geometries);
 
 }  // namespace kerf

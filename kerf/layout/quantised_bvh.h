@@ -1,0 +1,105 @@
+#pragma once
+
+#include <bit>
+#include <cstddef>
+
+#include "kerf/base/line_array.h"
+#include "kerf/layout/quantised_leaf.h"
+#include "kerf/layout/wide_costs.h"
+#include "kerf/tree/bvh.h"
+
+namespace kerf {
+
+struct LeafNumbers;
+
+/// Where a child of a QuantisedNode is: as WideChild, but a leaf's kind is the number of its corners. 4 bytes.
+struct QuantisedChild {
+  /// Kind 0: an inner node, by number. Kinds 1 to 24: a leaf of triangles with so many different corners, by the place
+  /// of its QuantisedLeaf. kSlots: a leaf of any primitives, as WideChild has it.
+  static constexpr uint32_t kKindBits = 5, kInner = 0, kSlots = 31;
+  static_assert(QuantisedLeaf::kMostCorners < kSlots);
+
+  uint32_t word = 0;
+
+  static QuantisedChild of(uint32_t kind, size_t number) {
+    return {static_cast<uint32_t>(number) << kKindBits | kind};
+  }
+  uint32_t kind() const { return word & ((1U << kKindBits) - 1); }
+  uint32_t number() const { return word >> kKindBits; }
+  bool is_leaf() const { return kind() != kInner; }
+};
+
+/// The boxes of up to eight children side by side, each side in a byte: so many steps of a power of two from the least
+/// of all (the idea: Ylitie, Karras, Laine: Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs,
+/// 2017, section 3.2). A side as float arithmetic makes it from that, one product without rounding and one sum, is
+/// never inside the box that it stands for, whatever the size of numbers.
+struct alignas(32) QuantisedNode {
+  static constexpr uint32_t kWidth = 8;
+  static constexpr uint32_t kMostSteps = 255;
+
+  float origin[3];
+  uint8_t exponents[3];  ///< of the steps, as floats have it; 0: no step, where all is flat
+  uint8_t places;        ///< those with a child, the first ones, as bits; others have sides inside out
+  uint8_t sides[3][2][kWidth];
+  QuantisedChild child[kWidth];
+
+  float step(uint32_t axis) const { return std::bit_cast<float>(uint32_t{exponents[axis]} << 23); }
+  float side_at(uint32_t axis, uint32_t steps) const {
+    return origin[axis] + static_cast<float>(steps) * step(axis);
+  }
+  Box3f bounds(uint32_t i) const {
+    Box3f box;
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+      box.lower[axis] = side_at(axis, sides[axis][0][i]);
+      box.upper[axis] = side_at(axis, sides[axis][1][i]);
+    }
+    return box;
+  }
+  bool has_child(uint32_t i) const { return (places >> i & 1) != 0; }
+
+  /// Of the first children, as tight as steps allow; the others are none.
+  void set_bounds(std::span<const Box3f> boxes);
+};
+static_assert(sizeof(QuantisedNode) == 96);
+
+/// A WideBvh<8> in about half the memory: boxes in bytes, corners that triangles share.
+struct QuantisedBvh {
+  using Child = QuantisedChild;
+  static constexpr uint32_t kChildren = QuantisedNode::kWidth;
+
+  /// Nodes and units that its words can number.
+  static constexpr uint32_t kMostNumbers = 1U << (32 - QuantisedChild::kKindBits);
+
+  Box3f bounds;         ///< of the root
+  QuantisedChild root;  ///< an inner node or a single leaf; with no units: nothing to hit
+  CornerKind corner_kind = CornerKind::places;
+  LineArray<QuantisedNode> nodes;
+  LineArray<LeafUnit> leaves;
+
+  bool is_empty() const { return leaves.size() == 0; }
+  size_t bytes() const { return nodes.bytes() + leaves.bytes(); }
+
+  QuantisedLeaf triangles(QuantisedChild leaf) const { return {leaves[leaf.number()].floats(), leaf.kind()}; }
+  /// Of a leaf of kSlots.
+  uint32_t slot_count(QuantisedChild leaf) const { return std::bit_cast<uint32_t>(leaves[leaf.number()].values[0]); }
+  /// The slots of a leaf of any kind.
+  std::vector<LeafSlot> slots(QuantisedChild leaf) const;
+  /// Writes a leaf of triangles, as they are now, or of any primitives, from a unit on.
+  QuantisedChild write_leaf(std::span<const LeafSlot> slots, bool is_triangles, std::span<const Geometry> geometries,
+                            size_t unit);
+};
+
+/// As make_wide_bvh<8>(), from the same collapse; Error(too_large) comes from 2 GB of leaves on. `kind`: vertices for a
+/// layout that is to be refitted.
+QuantisedBvh make_quantised_bvh(const Bvh& bvh, std::span<const Geometry> geometries, const WideCosts& costs = {},
+                                CornerKind kind = CornerKind::places, LeafNumbers* numbers = nullptr);
+
+/// What is wrong with it, if anything: a side that is not where its child's box ends, a primitive that has one slot and
+/// reaches out of a box above it, steps larger than they need be, a node or leaf reached twice or never or out of order,
+/// a path longer than kMaxDepth, a gap between children, a leaf whose triangles are not the caller's.
+std::optional<std::string> find_fault(const QuantisedBvh& layout, std::span<const Geometry> geometries);
+
+/// Equal for equal trees, whatever the machine.
+uint64_t tree_hash(const QuantisedBvh& layout);
+
+}  // namespace kerf
