@@ -328,7 +328,7 @@ void check_deepest() {
   HandScene scene;
   for (int i = 0; i < 2; ++i) scene.add(static_cast<float>(i + 1));
   const Box3f box{{0, 0, 0}, {3, 1, 1}};
-  WideTracer<kWidth> tracer;
+  WideTracer<WideBvh<kWidth>> tracer;
   tracer.geometries = scene.geometries();
   WideBvh<kWidth>& layout = tracer.layout;
   constexpr size_t kLeaves = (kWidth - 1) * kMaxDepth + 1;
@@ -351,7 +351,7 @@ void check_deepest() {
     }
   }
   ASSERT_EQ(leaf, 0U);
-  const TraceTable& table = *wide_kernels<kWidth>().table;
+  const TraceTable& table = *wide_kernels<WideBvh<kWidth>>().table;
   TraceCounts counts;
   const Ray ray{.origin = {-1, 0.25F, 0.25F}, .direction = {1, 0, 0}};
   EXPECT_EQ(table.closest_counted(&tracer, ray, counts).primitive, 0U);

@@ -145,74 +145,69 @@ struct LeafTests {
   }
 };
 
-/// intersect() of triangles that a ray may hit, the three corners side by side; the same operations, so the same bits.
-/// Four doubles as a language extension, which every target has in some form.
-class ExactTest {
- public:
-  explicit ExactTest(const Ray& ray, const WideRay& wide)
-      : z_(static_cast<double>(wide.direction_z)),
-        shear_x_(static_cast<double>(ray.direction[wide.kx] + 0.0F) / z_),
-        shear_y_(static_cast<double>(ray.direction[wide.ky] + 0.0F) / z_) {
-    origin_x_ = wide.origin[wide.kx];
-    origin_y_ = wide.origin[wide.ky];
-    origin_z_ = wide.origin[wide.kz];
+#include "kerf/trace/exact_test.h"
+#include "kerf/trace/quantised_boxes.h"
+
+/// A WideNode's sides as streams take them.
+template <uint32_t kWidth>
+struct WideSides {
+  template <class D>
+  static HWY_INLINE hn::Vec<D> load(D d, const WideNode<kWidth>& node, uint32_t axis, uint32_t upper, uint32_t first) {
+    return hn::Load(d, node.sides[axis][upper] + first);
   }
-
-  HWY_INLINE bool hits(const TriangleLeaf& leaf, uint32_t i, const WideRay& ray, float limit,
-                       Crossing& crossing) const {
-    Corners x, y, z;
-    load(leaf, ray.kx, i, x);
-    load(leaf, ray.ky, i, y);
-    load(leaf, ray.kz, i, z);
-    z -= origin_z_;
-    x = x - origin_x_ - shear_x_ * z;
-    y = y - origin_y_ - shear_y_ * z;
-    const Corners x_cab = __builtin_shufflevector(x, x, 2, 0, 1, 3), y_cab = __builtin_shufflevector(y, y, 2, 0, 1, 3);
-    const Corners x_bca = __builtin_shufflevector(x, x, 1, 2, 0, 3), y_bca = __builtin_shufflevector(y, y, 1, 2, 0, 3);
-    const Corners edges = x_cab * y_bca - y_cab * x_bca;
-    const double u = edges[0], v = edges[1], w = edges[2];
-    if (std::min(std::min(u, v), w) < 0 && std::max(std::max(u, v), w) > 0) return false;
-    const double area = u + v + w;
-    if (area == 0) return false;
-    const Corners depths = edges * z;
-    const double t = (depths[0] + depths[1] + depths[2]) / (area * z_);
-    crossing.t = without_minus_zero(static_cast<float>(t));
-    if (!(crossing.t >= ray.t_min && crossing.t <= limit && std::isfinite(crossing.t))) return false;
-    crossing.u = without_minus_zero(static_cast<float>(v / area));
-    crossing.v = without_minus_zero(static_cast<float>(w / area));
-    return true;
-  }
-
- private:
-  using Corners [[gnu::vector_size(32)]] = double;
-
-  static HWY_INLINE void load(const TriangleLeaf& leaf, uint32_t axis, uint32_t i, Corners& to) {
-    const float* const first = leaf.column(0, axis) + i;
-    const size_t next = size_t{3} * leaf.count;
-    to = Corners{first[0], first[next], first[2 * next], 0};
-  }
-
-  double z_, shear_x_, shear_y_, origin_x_, origin_y_, origin_z_;
+  /// Others than these are entered by no ray anyway.
+  static HWY_INLINE uint32_t places(const WideNode<kWidth>&) { return (1U << kWidth) - 1; }
 };
 
-/// A ray on its way through a WideBvh.
-template <uint32_t kWidth, bool kFused, bool kAny, class Counts>
+/// What a Walk goes through, and how.
+template <uint32_t kChildren>
+struct WideTree {
+  static constexpr uint32_t kWidth = kChildren;
+  using Layout = WideBvh<kWidth>;
+  using Node = WideNode<kWidth>;
+  using Child = WideChild;
+  using Leaf = TriangleLeaf;
+  template <bool kFused>
+  using Boxes = BoxTests<kWidth, kFused>;
+  using Leaves = LeafTests;
+  using Sides = WideSides<kWidth>;
+};
+struct QuantisedTree {
+  static constexpr uint32_t kWidth = QuantisedNode::kWidth;
+  using Layout = QuantisedBvh;
+  using Node = QuantisedNode;
+  using Child = QuantisedChild;
+  using Leaf = QuantisedLeaf;
+  template <bool kFused>
+  using Boxes = QuantisedBoxTests<kFused>;
+  using Leaves = QuantisedLeafTests;
+  using Sides = QuantisedSides;
+};
+
+/// A ray on its way through such a tree.
+template <class Tree, bool kFused, bool kAny, class Counts>
 class Walk {
+  static constexpr uint32_t kWidth = Tree::kWidth;
+  using Tracer = WideTracer<typename Tree::Layout>;
+  using Node = typename Tree::Node;
+  using Child = typename Tree::Child;
+  using Leaf = typename Tree::Leaf;
+
  public:
-  Walk(const WideTracer<kWidth>& tracer, const Ray& ray, const WideRay& wide, Hit& best, Counts& counts)
+  Walk(const Tracer& tracer, const Ray& ray, const WideRay& wide, Hit& best, Counts& counts)
       : tracer_(tracer), ray_(ray), wide_(wide), best_(best), counts_(counts), boxes_(wide), leaves_(wide) {}
 
-  HWY_INLINE void run(WideChild from) {
+  HWY_INLINE void run(Child from) {
     constexpr uint32_t kMostWaiting = (kWidth - 1) * kMaxDepth;  // all children but one of each node above
     uint64_t waiting[kMostWaiting + kWidth];
     uint64_t* top = waiting;
-    const WideNode<kWidth>* const nodes = tracer_.layout.nodes.data();
+    const Node* const nodes = tracer_.layout.nodes.data();
     uint64_t current = key(from, ray_.t_min);
     while (true) {
       counts_.count_nodes(1);
-      const WideChild child{static_cast<uint32_t>(current)};
+      const Child child{static_cast<uint32_t>(current)};
       if (!child.is_leaf()) {
-        const WideNode<kWidth>& node = nodes[child.number()];
+        const Node& node = nodes[child.number()];
         HWY_ALIGN float entry[kWidth];
         counts_.count_boxes(kWidth);
         uint32_t entered = boxes_.enter(node, best_.t, entry);
@@ -252,8 +247,7 @@ class Walk {
   }
 
   /// The triangles of `found`, exactly. Whether the walk is over.
-  static HWY_NOINLINE bool test_triangles(const WideTracer<kWidth>& tracer, const Ray& ray, const WideRay& wide,
-                                          Hit& best, const TriangleLeaf& triangles, uint32_t found) {
+  static HWY_NOINLINE bool test_triangles(const Tracer& tracer, const Ray& ray, const WideRay& wide, Hit& best, const Leaf& triangles, uint32_t found) {
     const ExactTest exact(ray, wide);
     for (; found != 0; found &= found - 1) {
       const auto i = static_cast<uint32_t>(std::countr_zero(found));
@@ -271,18 +265,18 @@ class Walk {
 
  private:
   /// Nearer first as numbers, while entries are not negative; below that only the order suffers.
-  static HWY_INLINE uint64_t key(WideChild child, float entry) {
+  static HWY_INLINE uint64_t key(Child child, float entry) {
     return uint64_t{std::bit_cast<uint32_t>(entry)} << 32 | child.word;
   }
   static HWY_INLINE float entry_of(uint64_t key) { return std::bit_cast<float>(static_cast<uint32_t>(key >> 32)); }
 
-  static HWY_INLINE uint64_t take(const WideNode<kWidth>& node, const float* entry, uint32_t& entered) {
+  static HWY_INLINE uint64_t take(const Node& node, const float* entry, uint32_t& entered) {
     const auto i = static_cast<uint32_t>(std::countr_zero(entered));
     entered &= entered - 1;
     return key(node.child[i], entry[i]);
   }
 
-  static HWY_INLINE uint64_t take_last(const WideNode<kWidth>& node, const float* entry, uint32_t& entered) {
+  static HWY_INLINE uint64_t take_last(const Node& node, const float* entry, uint32_t& entered) {
     const auto i = static_cast<uint32_t>(std::bit_width(entered) - 1);
     entered ^= 1U << i;
     return key(node.child[i], entry[i]);
@@ -299,9 +293,9 @@ class Walk {
   }
 
   /// Whether the walk is over: any hit is enough.
-  HWY_INLINE bool test_leaf(WideChild leaf) {
-    if (leaf.kind() == WideChild::kSlots) return test_slots(leaf);
-    const TriangleLeaf triangles = tracer_.layout.triangles(leaf);
+  HWY_INLINE bool test_leaf(Child leaf) {
+    if (leaf.kind() == Child::kSlots) return test_slots(leaf);
+    const Leaf triangles = tracer_.layout.triangles(leaf);
     if constexpr (Counts::kCounts) {
       for (const LeafSlot& slot : tracer_.layout.slots(leaf)) counts_.count_primitives(std::span(&slot, 1));
     }
@@ -309,7 +303,7 @@ class Walk {
     return found != 0 && test_triangles(tracer_, ray_, wide_, best_, triangles, found);
   }
 
-  HWY_NOINLINE bool test_slots(WideChild leaf) {
+  HWY_NOINLINE bool test_slots(Child leaf) {
     const PreparedRay prepared(ray_);
     for (const LeafSlot& slot : tracer_.layout.slots(leaf)) {
       if (test_primitive(tracer_.geometries, slot, prepared, best_, counts_) && kAny) return true;
@@ -317,22 +311,24 @@ class Walk {
     return false;
   }
 
-  const WideTracer<kWidth>& tracer_;
+  const Tracer& tracer_;
   const Ray& ray_;
   const WideRay& wide_;
   Hit& best_;
   Counts& counts_;
-  const BoxTests<kWidth, kFused> boxes_;
-  const LeafTests leaves_;
+  const typename Tree::template Boxes<kFused> boxes_;
+  const typename Tree::Leaves leaves_;
 };
 
 #include "kerf/trace/wide_stream.h"
 
-template <uint32_t kWidth>
+template <class Tree>
 struct Kernel {
-  const WideTracer<kWidth>& tracer;
+  using Tracer = WideTracer<typename Tree::Layout>;
 
-  static Kernel at(const void* data) { return {*static_cast<const WideTracer<kWidth>*>(data)}; }
+  const Tracer& tracer;
+
+  static Kernel at(const void* data) { return {*static_cast<const Tracer*>(data)}; }
 
   template <bool kAny, class Counts>
   Hit trace(const Ray& ray, Counts& counts) const {
@@ -348,9 +344,9 @@ struct Kernel {
     counts.count_boxes(1);
     if (!wide.enters(lower, upper)) return {};
     if (wide.is_fused) {
-      Walk<kWidth, true, kAny, Counts>(tracer, ray, wide, best, counts).run(tracer.layout.root);
+      Walk<Tree, true, kAny, Counts>(tracer, ray, wide, best, counts).run(tracer.layout.root);
     } else {
-      Walk<kWidth, false, kAny, Counts>(tracer, ray, wide, best, counts).run(tracer.layout.root);
+      Walk<Tree, false, kAny, Counts>(tracer, ray, wide, best, counts).run(tracer.layout.root);
     }
     return finished(best);
   }
@@ -359,13 +355,14 @@ struct Kernel {
   template <class Result, class Counts>
   void trace_batch(std::span<const Ray> rays, std::span<Result> results, Counts& counts) const {
     const auto single = [&](const Ray& ray) { return trace<!std::is_same_v<Result, Hit>>(ray, counts); };
-    if (!Counts::kCounts && trace_streams(tracer, rays, results, single)) return;
+    if (!Counts::kCounts && trace_streams<Tree>(tracer, rays, results, single)) return;
     for (size_t i = 0; i < rays.size(); ++i) results[i] = result_of<Result>(single(rays[i]));
   }
 };
 
-const TraceTable* table4() { return &kTraceTable<Kernel<4>>; }
-const TraceTable* table8() { return &kTraceTable<Kernel<8>>; }
+const TraceTable* table4() { return &kTraceTable<Kernel<WideTree<4>>>; }
+const TraceTable* table8() { return &kTraceTable<Kernel<WideTree<8>>>; }
+const TraceTable* quantised_table() { return &kTraceTable<Kernel<QuantisedTree>>; }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace kerf
@@ -376,16 +373,22 @@ namespace kerf {
 
 HWY_EXPORT(table4);
 HWY_EXPORT(table8);
+HWY_EXPORT(quantised_table);
 
 template <>
-WideKernels wide_kernels<4>() {
+WideKernels wide_kernels<WideBvh<4>>() {
   const InstructionSet set = chosen_instruction_set();
   return {KERF_DISPATCH(table4, set)(), set.name};
 }
 template <>
-WideKernels wide_kernels<8>() {
+WideKernels wide_kernels<WideBvh<8>>() {
   const InstructionSet set = chosen_instruction_set();
   return {KERF_DISPATCH(table8, set)(), set.name};
+}
+template <>
+WideKernels wide_kernels<QuantisedBvh>() {
+  const InstructionSet set = chosen_instruction_set();
+  return {KERF_DISPATCH(quantised_table, set)(), set.name};
 }
 
 }  // namespace kerf

@@ -3,15 +3,16 @@
 #include <span>
 #include <string_view>
 
+#include "kerf/layout/quantised_bvh.h"
 #include "kerf/layout/wide_bvh.h"
 #include "kerf/trace/trace_table.h"
 
 namespace kerf {
 
-/// A WideBvh and what its slots name: what the kernels work on.
-template <uint32_t kWidth>
+/// A WideBvh or QuantisedBvh and what its slots name: what the kernels work on.
+template <class Layout>
 struct WideTracer {
-  WideBvh<kWidth> layout;
+  Layout layout;
   std::span<const Geometry> geometries;
 };
 
@@ -23,7 +24,7 @@ struct WideKernels {
 
 /// The kernels for the chosen_instruction_set(), whose errors it throws; to be asked once, not for each ray. Hits are
 /// the same bits for all.
-template <uint32_t kWidth>
+template <class Layout>
 WideKernels wide_kernels();
 
 }  // namespace kerf

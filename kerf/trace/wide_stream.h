@@ -6,10 +6,15 @@
 /// the node's children, the one first that its rays enter earliest on average. No branch depends on a single ray, nodes
 /// and leaves are asked for before they are needed, and the tree does the sorting: rays need none beforehand but by
 /// the signs of their directions. Where a list is down to a ray, a Walk takes it on. Hits are those of single rays.
-template <uint32_t kWidth, bool kAny>
+template <class Tree, bool kAny>
 class Stream {
+  static constexpr uint32_t kWidth = Tree::kWidth;
+  using Tracer = WideTracer<typename Tree::Layout>;
+  using Node = typename Tree::Node;
+  using Child = typename Tree::Child;
+
  public:
-  Stream(const WideTracer<kWidth>& tracer, StreamMemory& memory)
+  Stream(const Tracer& tracer, StreamMemory& memory)
       : tracer_(tracer),
         rays_(memory.rays()),
         hits_(memory.hits()),
@@ -23,17 +28,16 @@ class Stream {
     Task* top = waiting;
     *top++ = {tracer_.layout.root, 0, count, count, 0};
     const uint32_t* const near_upper = hits_[lists_[0]].wide.near_upper;
-    const uint32_t rows[3] = {near_upper[0] * kWidth, (2 + near_upper[1]) * kWidth, (4 + near_upper[2]) * kWidth};
     while (top != waiting) {
       const Task task = *--top;
-      if (task.child.kind() == WideChild::kSlots || (!task.child.is_leaf() && !pays(task))) {
+      if (task.child.kind() == Child::kSlots || (!task.child.is_leaf() && !pays(task))) {
         walk(task);
       } else if (task.child.is_leaf()) {
         test_leaf(task);
       } else {
-        const WideNode<kWidth>& node = tracer_.layout.nodes[task.child.number()];
+        const Node& node = tracer_.layout.nodes[task.child.number()];
         HWY_ALIGN float sums[kWidth];
-        const uint32_t entered = enter(node, rows, task, sums);
+        const uint32_t entered = enter(node, near_upper, task, sums);
         top = divide(node, entered, sums, task, top);
       }
     }
@@ -46,7 +50,7 @@ class Stream {
 
   /// A child and the rays that enter its box.
   struct Task {
-    WideChild child;
+    Child child;
     uint32_t first, count;  ///< in lists_; of a leaf their entries follow
     uint32_t free;          ///< where lists_ that wait end
     float order;            ///< the mean of their entries
@@ -58,14 +62,14 @@ class Stream {
   }
 
   /// Box tests of all rays; which children any of them enters, and the sums of their entries.
-  HWY_INLINE uint32_t enter(const WideNode<kWidth>& node, const uint32_t (&rows)[3], const Task& task, float* sums) {
+  HWY_INLINE uint32_t enter(const Node& node, const uint32_t* near_upper, const Task& task, float* sums) {
     const Box d;
     uint32_t all = 0;
     for (uint32_t part = 0; part < kWidth; part += hn::MaxLanes(d)) {
-      const float* const sides = &node.sides[0][0][0] + part;
-      const auto x0 = hn::Load(d, sides + rows[0]), x1 = hn::Load(d, sides + (rows[0] ^ kWidth));
-      const auto y0 = hn::Load(d, sides + rows[1]), y1 = hn::Load(d, sides + (rows[1] ^ kWidth));
-      const auto z0 = hn::Load(d, sides + rows[2]), z1 = hn::Load(d, sides + (rows[2] ^ kWidth));
+      const auto side = [&](uint32_t axis, uint32_t far) {
+        return Tree::Sides::load(d, node, axis, near_upper[axis] ^ far, part);
+      };
+      const auto x0 = side(0, 0), x1 = side(0, 1), y0 = side(1, 0), y1 = side(1, 1), z0 = side(2, 0), z1 = side(2, 1);
       auto sum = hn::Zero(d);
       for (uint32_t i = 0; i < task.count; ++i) {
         const StreamRay& ray = rays_[lists_[task.first + i]];
@@ -88,18 +92,18 @@ class Stream {
       }
       hn::Store(sum, d, sums + part);
     }
-    return all;
+    return all & Tree::Sides::places(node);
   }
 
   /// Lists each child's rays and puts the children upon the stack, the earliest entered on top, for any hit the
   /// largest.
-  HWY_INLINE Task* divide(const WideNode<kWidth>& node, uint32_t entered, const float* sums, const Task& task,
+  HWY_INLINE Task* divide(const Node& node, uint32_t entered, const float* sums, const Task& task,
                           Task* top) {
     Task* const base = top;
     uint32_t end = task.free;
     for (; entered != 0; entered &= entered - 1) {
       const auto i = static_cast<uint32_t>(std::countr_zero(entered));
-      const WideChild child = node.child[i];
+      const Child child = node.child[i];
       prefetch(child);
       Task made{child, end, 0, 0, 0};
       made.count = list(task, i, lists_ + end);
@@ -147,7 +151,7 @@ class Stream {
     return static_cast<uint32_t>(to - begin);
   }
 
-  void prefetch(WideChild child) const {
+  void prefetch(Child child) const {
     const void* at = child.is_leaf() ? static_cast<const void*>(tracer_.layout.leaves[child.number()].floats())
                                      : &tracer_.layout.nodes[child.number()];
     for (uint32_t line = 0; line < kLines; ++line) __builtin_prefetch(static_cast<const char*>(at) + size_t{64} * line);
@@ -155,7 +159,7 @@ class Stream {
 
   /// First all filters, then what they let pass: so it is known early which rays that is.
   HWY_NOINLINE void test_leaf(const Task& task) {
-    const TriangleLeaf triangles = tracer_.layout.triangles(task.child);
+    const typename Tree::Leaf triangles = tracer_.layout.triangles(task.child);
     uint32_t* const numbers = lists_ + task.first;
     const uint32_t* const entries = numbers + task.count;
     uint32_t passed = 0;
@@ -167,7 +171,7 @@ class Stream {
     uint32_t candidates = 0;
     for (uint32_t i = 0; i < passed; ++i) {
       const uint32_t number = numbers[i];
-      const uint32_t found = LeafTests(hits_[number].wide).may_hit(triangles);
+      const uint32_t found = typename Tree::Leaves(hits_[number].wide).may_hit(triangles);
       numbers[candidates] = number;
       entered_[candidates] = static_cast<uint8_t>(found);
       candidates += found != 0 ? 1 : 0;
@@ -191,11 +195,11 @@ class Stream {
     }
   }
 
-  using Single = Walk<kWidth, true, kAny, NoCounts>;
+  using Single = Walk<Tree, true, kAny, NoCounts>;
   static constexpr uint32_t kLines = 4;  // of a node, and what most leaves have at most
   static constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-  const WideTracer<kWidth>& tracer_;
+  const Tracer& tracer_;
   StreamRay* const rays_;
   StreamHit* const hits_;
   uint32_t* const lists_;
@@ -214,8 +218,8 @@ Result result_of(const Hit& hit) {
 }
 
 /// As many rays as memory holds at most. `single` traces one that streams cannot take.
-template <uint32_t kWidth, class Result, class Single>
-void trace_some(const WideTracer<kWidth>& tracer, std::span<const Ray> rays, std::span<Result> results,
+template <class Tree, class Result, class Single>
+void trace_some(const WideTracer<typename Tree::Layout>& tracer, std::span<const Ray> rays, std::span<Result> results,
                 StreamMemory& memory, const Single& single) {
   constexpr uint8_t kOctants = 8, kOut = kOctants;
   const Box3f& bounds = tracer.layout.bounds;
@@ -244,7 +248,7 @@ void trace_some(const WideTracer<kWidth>& tracer, std::span<const Ray> rays, std
     if (counts[octant] == 0) continue;
     const uint32_t* const end = memory.numbers() + places[octant];
     std::copy(end - counts[octant], end, memory.lists());
-    Stream<kWidth, !std::is_same_v<Result, Hit>>(tracer, memory).run(counts[octant]);
+    Stream<Tree, !std::is_same_v<Result, Hit>>(tracer, memory).run(counts[octant]);
   }
   for (size_t i = 0; i < rays.size(); ++i) {
     if (memory.octants()[i] != kOut) results[i] = result_of<Result>(memory.hits()[i].best);
@@ -252,8 +256,8 @@ void trace_some(const WideTracer<kWidth>& tracer, std::span<const Ray> rays, std
 }
 
 /// False, and nothing is done, where single rays are as good.
-template <uint32_t kWidth, class Result, class Single>
-bool trace_streams(const WideTracer<kWidth>& tracer, std::span<const Ray> rays, std::span<Result> results,
+template <class Tree, class Result, class Single>
+bool trace_streams(const WideTracer<typename Tree::Layout>& tracer, std::span<const Ray> rays, std::span<Result> results,
                    const Single& single) {
   constexpr size_t kFewest = 32;
   // Narrower vectors compress by tables, which takes longer than streams save.
@@ -265,7 +269,7 @@ bool trace_streams(const WideTracer<kWidth>& tracer, std::span<const Ray> rays, 
   constexpr size_t kMost = StreamMemory::kMostRays;
   for (size_t begin = 0; begin < rays.size(); begin += kMost) {
     const size_t count = std::min(kMost, rays.size() - begin);
-    trace_some(tracer, rays.subspan(begin, count), results.subspan(begin, count), memory, single);
+    trace_some<Tree>(tracer, rays.subspan(begin, count), results.subspan(begin, count), memory, single);
   }
   return true;
 }

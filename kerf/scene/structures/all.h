@@ -5,6 +5,7 @@
 
 #include "kerf/build/bsp_sah.h"
 #include "kerf/build/top_down.h"
+#include "kerf/layout/quantised_bvh.h"
 #include "kerf/layout/wide_bvh.h"
 #include "kerf/layout/wide_collapse.h"
 #include "kerf/scene/structure.h"
@@ -88,6 +89,22 @@ inline constexpr LayoutEntry kBvh8Layout = {
     true,
     true,
     kWideBytes<8>};
+
+std::unique_ptr<Structure> make_quantised_bvh8_structure(Bvh bvh, const StructureInput& input,
+                                                         const OptionValues& options);
+/// As kWideBytes, a leaf of one triangle being the largest.
+inline constexpr size_t kQuantisedBytes = sizeof(LeafSlot) + 2 * (sizeof(BvhNode) + WideCollapse::kBytesPerNode) +
+                                          QuantisedLeaf::units(1, 3, true) * sizeof(LeafUnit) + sizeof(QuantisedNode);
+inline constexpr LayoutEntry kQuantisedBvh8Layout = {
+    "quantised_bvh8",
+    "bvh8 in about half the memory: the sides of boxes in bytes, and triangles in a leaf share their corners",
+    "Ylitie, Karras, Laine: Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, 2017",
+    kWideOptions,
+    QuantisedLeaf::kMost,
+    make_quantised_bvh8_structure,
+    true,
+    true,
+    kQuantisedBytes};
 
 std::unique_ptr<Structure> make_late_split_structure(Bvh bvh, const StructureInput& input, const OptionValues& options);
 inline constexpr OptionSpec kLateSplitOptions[] = {

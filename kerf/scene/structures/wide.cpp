@@ -1,3 +1,5 @@
+#include <type_traits>
+
 #include "kerf/layout/wide_refit.h"
 #include "kerf/scene/structures/all.h"
 #include "kerf/trace/trace_wide.h"
@@ -5,13 +7,19 @@
 namespace kerf {
 namespace {
 
-template <uint32_t kWidth>
+/// A layout and its kernels.
+template <class Layout>
 class WideStructure : public Structure {
  public:
   WideStructure(const Bvh& bvh, const StructureInput& input, const WideCosts& costs)
-      : kernels_(wide_kernels<kWidth>()) {
+      : kernels_(wide_kernels<Layout>()) {
     LeafNumbers* numbers = input.refittable && input.is_split ? &numbers_ : nullptr;
-    tracer_.layout = make_wide_bvh<kWidth>(bvh, input.geometries, costs, numbers);
+    if constexpr (std::is_same_v<Layout, QuantisedBvh>) {
+      const CornerKind kind = input.refittable ? CornerKind::vertices : CornerKind::places;
+      tracer_.layout = make_quantised_bvh(bvh, input.geometries, costs, kind, numbers);
+    } else {
+      tracer_.layout = make_wide_bvh<Layout::kChildren>(bvh, input.geometries, costs, numbers);
+    }
     tracer_.geometries = input.geometries;
   }
 
@@ -34,38 +42,42 @@ class WideStructure : public Structure {
   size_t refit_bytes() const override { return numbers_.bytes(); }
 
  private:
-  void visit_child(WideChild child, const Box3f& bounds, uint32_t depth,
+  void visit_child(typename Layout::Child child, const Box3f& bounds, uint32_t depth,
                    const std::function<void(const NodeView&)>& visit) const {
     const std::vector<LeafSlot> slots = child.is_leaf() ? tracer_.layout.slots(child) : std::vector<LeafSlot>{};
     visit({bounds, depth, child.is_leaf(), slots});
     if (child.is_leaf()) return;
-    const WideNode<kWidth>& node = tracer_.layout.nodes[child.number()];
-    for (uint32_t i = 0; i < kWidth && node.has_child(i); ++i) {
+    const auto& node = tracer_.layout.nodes[child.number()];
+    for (uint32_t i = 0; i < Layout::kChildren && node.has_child(i); ++i) {
       visit_child(node.child[i], node.bounds(i), depth + 1, visit);
     }
   }
 
   WideKernels kernels_;
-  WideTracer<kWidth> tracer_;
+  WideTracer<Layout> tracer_;
   LeafNumbers numbers_;
 };
 
-template <uint32_t kWidth>
+template <class Layout>
 std::unique_ptr<Structure> make(Bvh bvh, const StructureInput& input, const OptionValues& options) {
   input.limit.check(bvh.bytes());
   WideCosts costs;
   costs.leaf = options["leaf_cost"];
   costs.triangle = options["triangle_cost"];
-  return std::make_unique<WideStructure<kWidth>>(bvh, input, costs);
+  return std::make_unique<WideStructure<Layout>>(bvh, input, costs);
 }
 
 }  // namespace
 
 std::unique_ptr<Structure> make_bvh4_structure(Bvh bvh, const StructureInput& input, const OptionValues& options) {
-  return make<4>(std::move(bvh), input, options);
+  return make<WideBvh<4>>(std::move(bvh), input, options);
 }
 std::unique_ptr<Structure> make_bvh8_structure(Bvh bvh, const StructureInput& input, const OptionValues& options) {
-  return make<8>(std::move(bvh), input, options);
+  return make<WideBvh<8>>(std::move(bvh), input, options);
+}
+std::unique_ptr<Structure> make_quantised_bvh8_structure(Bvh bvh, const StructureInput& input,
+                                                         const OptionValues& options) {
+  return make<QuantisedBvh>(std::move(bvh), input, options);
 }
 
 }  // namespace kerf
