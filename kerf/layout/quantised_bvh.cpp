@@ -12,37 +12,40 @@ namespace {
 
 constexpr uint32_t kMostSteps = QuantisedNode::kMostSteps;
 
-/// The smallest step with which a side as far away as `upper` can be reached.
-uint8_t exponent_for(float lower, float upper) {
-  if (lower == upper) return 0;
-  const double extent = static_cast<double>(upper) - static_cast<double>(lower);
-  QuantisedNode node;
-  node.origin[0] = lower;
+/// Where a side is before it is rounded to float.
+double exact_side(const QuantisedNode& node, uint32_t axis, uint32_t steps) {
+  return static_cast<double>(node.origin[axis]) + steps * static_cast<double>(node.step(axis));
+}
+
+double steps_to(const QuantisedNode& node, uint32_t axis, float side) {
+  const double way = static_cast<double>(side) - static_cast<double>(node.origin[axis]);
+  return std::clamp<double>(way / static_cast<double>(node.step(axis)), 0, kMostSteps);
+}
+
+/// Makes the steps along an axis as small as they can be for sides from `lower` to `upper`.
+void set_steps(QuantisedNode& node, uint32_t axis, float lower, float upper) {
   constexpr int kBias = 127;
-  node.exponents[0] = static_cast<uint8_t>(std::max(std::ilogb(extent / kMostSteps) + kBias, 1));
-  while (node.side_at(0, kMostSteps) < upper) ++node.exponents[0];
-  return node.exponents[0];
+  node.origin[axis] = lower;
+  node.exponents[axis] = 0;
+  if (lower == upper) return;
+  const double extent = static_cast<double>(upper) - static_cast<double>(lower);
+  node.exponents[axis] = static_cast<uint8_t>(std::max(std::ilogb(extent / kMostSteps) + kBias, 1));
+  while (exact_side(node, axis, kMostSteps) < upper || node.side_at(axis, kMostSteps) < upper) ++node.exponents[axis];
 }
 
 /// The most steps that do not go beyond `lower`.
 uint8_t lower_steps(const QuantisedNode& node, uint32_t axis, float lower) {
-  const double step = node.step(axis);
-  if (step == 0) return 0;
-  const double exact = (static_cast<double>(lower) - static_cast<double>(node.origin[axis])) / step;
-  auto steps = static_cast<uint32_t>(std::clamp<double>(exact, 0, kMostSteps));
-  while (steps < kMostSteps && node.side_at(axis, steps + 1) <= lower) ++steps;
-  while (node.side_at(axis, steps) > lower) --steps;
+  if (node.exponents[axis] == 0) return 0;
+  auto steps = static_cast<uint32_t>(std::floor(steps_to(node, axis, lower)));
+  while (steps > 0 && node.side_at(axis, steps) > lower) --steps;  // where doubles were too short
   return static_cast<uint8_t>(steps);
 }
 
 /// The fewest that reach `upper`.
 uint8_t upper_steps(const QuantisedNode& node, uint32_t axis, float upper) {
-  const double step = node.step(axis);
-  if (step == 0) return 0;
-  const double exact = (static_cast<double>(upper) - static_cast<double>(node.origin[axis])) / step;
-  auto steps = static_cast<uint32_t>(std::clamp<double>(exact, 0, kMostSteps));
-  while (steps > 0 && node.side_at(axis, steps - 1) >= upper) --steps;
-  while (node.side_at(axis, steps) < upper) ++steps;
+  if (node.exponents[axis] == 0) return 0;
+  auto steps = static_cast<uint32_t>(std::ceil(steps_to(node, axis, upper)));
+  while (steps < kMostSteps && node.side_at(axis, steps) < upper) ++steps;
   return static_cast<uint8_t>(steps);
 }
 
@@ -53,16 +56,15 @@ size_t units_of_vertices(std::span<const LeafSlot> slots, std::span<const Geomet
   return quantised_leaf_size(slots, geometries, CornerKind::vertices).units;
 }
 
-/// Where along an axis the upper side of what a node holds is, as far as its children's steps tell: above `above`,
-/// up to `most`.
+/// Where along an axis the upper side of what a node holds is, as far as its children's steps tell.
 struct UpperSide {
-  float above, most;
+  double least, most;
 
-  UpperSide(const QuantisedNode& node, uint32_t axis) : above(-Box3f::kInfinity), most(node.origin[axis]) {
+  UpperSide(const QuantisedNode& node, uint32_t axis) : least(node.origin[axis]), most(node.origin[axis]) {
     for (uint32_t i = 0; i < QuantisedNode::kWidth && node.has_child(i); ++i) {
       const uint32_t steps = node.sides[axis][1][i];
-      if (steps > 0) above = std::max(above, node.side_at(axis, steps - 1));
-      most = std::max(most, node.side_at(axis, steps));
+      if (steps > 0) least = std::max(least, exact_side(node, axis, steps - 1));
+      most = std::max(most, static_cast<double>(node.side_at(axis, steps)));
     }
   }
 };
@@ -107,18 +109,17 @@ struct Rules {
       first = std::min<uint32_t>(first, node.sides[axis][0][i]);
       if (node.sides[axis][0][i] > node.sides[axis][1][i]) return false;
     }
-    const float half = 0.5F * node.step(axis);
-    return first == 0 && (node.exponents[axis] <= 1 ||
-                          node.origin[axis] + static_cast<float>(kMostSteps) * half < UpperSide(node, axis).most);
+    if (node.exponents[axis] <= 1) return first == 0;
+    QuantisedNode finer = node;
+    --finer.exponents[axis];
+    return first == 0 && exact_side(finer, axis, kMostSteps) <= UpperSide(node, axis).most;
   }
 
   static bool fits(const QuantisedNode& node, uint32_t i, uint32_t axis, const QuantisedNode& below) {
     const uint32_t first = node.sides[axis][0][i], last = node.sides[axis][1][i];
-    if (first != lower_steps(node, axis, below.origin[axis])) return false;
     const UpperSide upper(below, axis);
-    const float side = node.side_at(axis, last);
-    return side > upper.above && side >= below.origin[axis] &&
-           (last == 0 || node.side_at(axis, last - 1) < upper.most);
+    return first == lower_steps(node, axis, below.origin[axis]) && node.side_at(axis, last) >= upper.least &&
+           (last == 0 || exact_side(node, axis, last - 1) <= upper.most);
   }
 };
 
@@ -129,8 +130,7 @@ void QuantisedNode::set_bounds(std::span<const Box3f> boxes) {
   for (const Box3f& box : boxes) all.extend(box);
   places = static_cast<uint8_t>((1U << boxes.size()) - 1);
   for (uint32_t axis = 0; axis < 3; ++axis) {
-    origin[axis] = all.lower[axis];
-    exponents[axis] = exponent_for(all.lower[axis], all.upper[axis]);
+    set_steps(*this, axis, all.lower[axis], all.upper[axis]);
     for (uint32_t i = 0; i < kWidth; ++i) {
       const bool has_box = i < boxes.size();
       sides[axis][0][i] = has_box ? lower_steps(*this, axis, boxes[i].lower[axis]) : static_cast<uint8_t>(kMostSteps);

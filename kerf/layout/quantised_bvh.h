@@ -80,9 +80,11 @@ struct QuantisedBvh {
   size_t bytes() const { return nodes.bytes() + leaves.bytes(); }
 
   QuantisedLeaf triangles(QuantisedChild leaf) const { return {leaves[leaf.number()].floats(), leaf.kind()}; }
-  /// Of a leaf of kSlots.
-  uint32_t slot_count(QuantisedChild leaf) const { return std::bit_cast<uint32_t>(leaves[leaf.number()].values[0]); }
-  /// The slots of a leaf of any kind.
+  /// The slots of a leaf of any kind, and how many.
+  uint32_t slot_count(QuantisedChild leaf) const {
+    return leaf.kind() == QuantisedChild::kSlots ? std::bit_cast<uint32_t>(leaves[leaf.number()].values[0])
+                                                 : triangles(leaf).count();
+  }
   std::vector<LeafSlot> slots(QuantisedChild leaf) const;
   /// Writes a leaf of triangles, as they are now, or of any primitives, from a unit on.
   QuantisedChild write_leaf(std::span<const LeafSlot> slots, bool is_triangles, std::span<const Geometry> geometries,

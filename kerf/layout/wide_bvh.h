@@ -66,9 +66,10 @@ struct WideBvh {
   size_t bytes() const { return nodes.bytes() + leaves.bytes(); }
 
   TriangleLeaf triangles(WideChild leaf) const { return {leaves[leaf.number()].floats(), leaf.kind()}; }
-  /// Of a leaf of kSlots.
-  uint32_t slot_count(WideChild leaf) const { return std::bit_cast<uint32_t>(leaves[leaf.number()].values[0]); }
-  /// The slots of a leaf of any kind.
+  /// The slots of a leaf of any kind, and how many.
+  uint32_t slot_count(WideChild leaf) const {
+    return leaf.kind() == WideChild::kSlots ? std::bit_cast<uint32_t>(leaves[leaf.number()].values[0]) : leaf.kind();
+  }
   std::vector<LeafSlot> slots(WideChild leaf) const;
   /// Writes a leaf of triangles, as they are now, or of any primitives, from a unit on.
   WideChild write_leaf(std::span<const LeafSlot> slots, bool is_triangles, std::span<const Geometry> geometries,

@@ -78,11 +78,18 @@ class Refit {
         std::span<const Geometry> geometries)
       : layout_(layout), numbers_(numbers), fragments_(fragments), geometries_(geometries) {}
 
+  RefitOutcome run() {
+    RefitOutcome all = visit(layout_.root, 0);
+    all.sums.nodes += weighed_area(all.bounds, layout_.root);
+    return all;
+  }
+
+ private:
+  /// Its own area is left to the node above, which knows the box that rays meet.
   RefitOutcome visit(Child child, uint32_t depth) {
     return child.is_leaf() ? visit_leaf(child) : visit_node(layout_.nodes[child.number()], depth);
   }
 
- private:
   template <class Node>
   RefitOutcome visit_node(Node& node, uint32_t depth) {
     std::array<RefitOutcome, kChildren> below;
@@ -104,8 +111,12 @@ class Refit {
       boxes[count++] = below[i].bounds;
     }
     node.set_bounds(std::span(boxes).first(count));
-    all.sums.nodes += half_area(all.bounds);
+    for (uint32_t i = 0; i < count; ++i) all.sums.nodes += weighed_area(node.bounds(i), node.child[i]);
     return all;
+  }
+
+  double weighed_area(const Box3f& box, Child child) const {
+    return half_area(box) * static_cast<double>(child.is_leaf() ? layout_.slot_count(child) : 1);
   }
 
   RefitOutcome visit_leaf(Child leaf) {
@@ -129,7 +140,6 @@ class Refit {
       } while ((number & LeafNumbers::kLast) == 0);
     }
     if (leaf.kind() != Child::kSlots) layout_.write_leaf(slots, true, geometries_, leaf.number());
-    all.sums.nodes = half_area(all.bounds) * static_cast<double>(slots.size());
     return all;
   }
 
@@ -147,7 +157,7 @@ template <class Layout>
 RefitOutcome refit(Layout& layout, const LeafNumbers& numbers, const Fragments& fragments,
                    std::span<const Geometry> geometries) {
   if (layout.is_empty()) return {};
-  const RefitOutcome all = Refit<Layout>(layout, numbers, fragments, geometries).visit(layout.root, 0);
+  const RefitOutcome all = Refit<Layout>(layout, numbers, fragments, geometries).run();
   layout.bounds = all.bounds;
   return all;
 }

@@ -19,10 +19,10 @@ HWY_INLINE hn::Vec<D> step_of(D d, const QuantisedNode& node) {
 /// What the tests of boxes in steps need of a ray, in registers.
 ///
 /// A side is origin + q step, and its parameter that times inverse plus the offset of WideRay; with the node's
-/// constants S = step inverse and A = origin inverse + offset it is q S + A. In position: the product that S is has no
-/// rounding, for steps are powers of two; A is off by e M, so is the sum; the side itself, as float arithmetic rounds
-/// it, is not inside the box, but the one without that rounding may be, by e (M + o). So WideRay's sum of errors grows
-/// from e (3 M + 3 o) to e (5 M + 4 o), and its shift of 16 e (M + o) covers that too.
+/// constants S = step inverse and A = origin inverse + offset it is q S + A. In position: S has no rounding, for steps
+/// are powers of two (where it underflows, by 2^-150 of a parameter, the shift is above 2^-80 and inverse above 2^-50);
+/// A is off by e M. That is all that comes to what WideRay adds up, and its shift of 16 e (M + o) covers it. Without
+/// fused operations the side is as float arithmetic rounds it, never inside the box: see QuantisedNode.
 template <bool kFused>
 struct QuantisedBoxTests {
   static constexpr uint32_t kWidth = QuantisedNode::kWidth;

@@ -47,7 +47,7 @@ struct WideRay {
     ky = (0b010010U >> (2 * kz)) & 3;
     const float reach = largest(max(absolute(lower - origin), absolute(upper - origin)) + places);
     const float shift = std::max(0x1p-20F * reach, 0x1p-148F), least = 0x1p-30F * longest;
-    is_fused = reach >= 0x1p-60F && reach < 0x1p60F * least;
+    is_fused = reach >= 0x1p-60F && reach < 0x1p60F * least && longest <= 0x1p50F;
     const auto negative = d < zero;
     // Not a choice of two: the division would have to wait for it.
     const auto invert = [&](float smallest) {

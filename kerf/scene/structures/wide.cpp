@@ -14,7 +14,7 @@ class WideStructure : public Structure {
   WideStructure(const Bvh& bvh, const StructureInput& input, const WideCosts& costs)
       : kernels_(wide_kernels<Layout>()) {
     LeafNumbers* numbers = input.refittable && input.is_split ? &numbers_ : nullptr;
-    if constexpr (std::is_same_v<Layout, QuantisedBvh>) {
+    if constexpr (kIsQuantised) {
       const CornerKind kind = input.refittable ? CornerKind::vertices : CornerKind::places;
       tracer_.layout = make_quantised_bvh(bvh, input.geometries, costs, kind, numbers);
     } else {
@@ -36,12 +36,30 @@ class WideStructure : public Structure {
     if (!tracer_.layout.is_empty()) visit_child(tracer_.layout.root, tracer_.layout.bounds, 0, visit);
   }
 
+  /// Of the boxes that rays meet, which in steps reach a little out of those around them.
+  double cost() const override {
+    if constexpr (!kIsQuantised) return Structure::cost();
+    const Layout& layout = tracer_.layout;
+    const double root = half_area(layout.bounds);
+    if (layout.is_empty() || !(root > 0)) return 0;
+    const auto weight = [&](auto child) { return child.is_leaf() ? static_cast<double>(layout.slot_count(child)) : 1; };
+    double sum = root * weight(layout.root);
+    for (const auto& node : layout.nodes.span()) {
+      for (uint32_t i = 0; i < Layout::kChildren && node.has_child(i); ++i) {
+        sum += half_area(node.bounds(i)) * weight(node.child[i]);
+      }
+    }
+    return sum / root;
+  }
+
   RefitOutcome refit(const Fragments& fragments) override {
     return kerf::refit(tracer_.layout, numbers_, fragments, tracer_.geometries);
   }
   size_t refit_bytes() const override { return numbers_.bytes(); }
 
  private:
+  static constexpr bool kIsQuantised = std::is_same_v<Layout, QuantisedBvh>;
+
   void visit_child(typename Layout::Child child, const Box3f& bounds, uint32_t depth,
                    const std::function<void(const NodeView&)>& visit) const {
     const std::vector<LeafSlot> slots = child.is_leaf() ? tracer_.layout.slots(child) : std::vector<LeafSlot>{};
@@ -49,7 +67,7 @@ class WideStructure : public Structure {
     if (child.is_leaf()) return;
     const auto& node = tracer_.layout.nodes[child.number()];
     for (uint32_t i = 0; i < Layout::kChildren && node.has_child(i); ++i) {
-      visit_child(node.child[i], node.bounds(i), depth + 1, visit);
+      visit_child(node.child[i], intersected(bounds, node.bounds(i)), depth + 1, visit);
     }
   }
 
