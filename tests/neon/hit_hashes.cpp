@@ -111,7 +111,8 @@ void print_scene(const std::string& name, uint32_t count, float size) {
   const std::vector<RayKind> kinds = ray_kinds(things, size);
   for (const std::string structure :
        {"brute_force", "binned_sah", "binned_sah+packets", "binned_sah+bvh4", "binned_sah+bvh8",
-        "early_split(budget=2)+binned_sah+bvh4", "spatial_split+bvh8", "lbvh+bvh8", "balanced"}) {
+        "early_split(budget=2)+binned_sah+bvh4", "binned_sah+quantised_bvh8", "spatial_split+quantised_bvh8",
+        "spatial_split+bvh8", "lbvh+bvh8", "balanced"}) {
     if (structure == "brute_force" && count > kMostOneByOne) continue;
     Scene scene;
     for (const Geometry& geometry : things.geometries()) scene.add(geometry);

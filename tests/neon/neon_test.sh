@@ -32,7 +32,7 @@ wide_collapse_test *
 wide_bvh_test *
 scene_test *FloatingPointMode*
 batch_test Batch.*:*bvh4*:*bvh8*:*packets*-*GoesThroughBoxesThatOverlap*
-structures_test *sah_bvh4:*sah_bvh8:*sah_packets-*AnyNumberOfThreads*"
+structures_test *sah_bvh4:*sah_bvh8:*sah_quantised_bvh8:*sah_packets-*AnyNumberOfThreads*"
 programs=$(awk '{ print $1 }' <<<"$tests")
 
 # Assertions are on.
