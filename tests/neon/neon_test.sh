@@ -58,7 +58,7 @@ while read -r program _; do
   printf '%s: %s\n' "$program" "$(grep -E '^\[  (PASSED|FAILED)  \] [0-9]+ tests?' "$build/$program.log" || echo "no result")"
 done <<<"$tests"
 if [ -e "$build/failed" ]; then
-  for program in $(cat "$build/failed"); do cat "$build/$program.log"; done
+  while read -r program; do cat "$build/$program.log"; done <"$build/failed"
   fail "$(tr '\n' ' ' <"$build/failed")fails on NEON"
 fi
 
