@@ -188,7 +188,8 @@ Bvh optimise_reinsertion(Bvh bvh, const OptionValues& options, const WorkLimit& 
     if (!make_moves(tree, find_moves(tree, largest_nodes(tree, options["share"]), limit), limit)) break;
   }
   limit.check();
-  const LeafRule rule{static_cast<uint32_t>(options["leaf"]), options["inner_cost"], options["primitive_cost"]};
+  const LeafRule rule{static_cast<uint32_t>(options["leaf"]), options["inner_cost"], options["primitive_cost"],
+                      options["leaf_cost"]};
   return Collapse(tree, rule).bvh(bvh.slots);
 }
 

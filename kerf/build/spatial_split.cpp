@@ -33,12 +33,15 @@ class WholeDivision {
       }
     }
     overlap_ = half_area(is_found() ? intersected(left, right) : subset.bounds);
+    areas_ = half_area(left) + half_area(right);
   }
 
   bool is_found() const { return !std::isinf(cost_); }
   double cost() const { return cost_; }
   /// Half the area of what the boxes on both sides have in common; without a division, of the whole.
   double overlap() const { return overlap_; }
+  /// Of a division.
+  detail::AreaSums sums() const { return {areas_, cost_}; }
 
   Halves apply(SpatialOrder& order, const Subset& subset) const {
     if (!is_found()) return order.halve(subset);
@@ -50,7 +53,7 @@ class WholeDivision {
   detail::Slices slices_;
   detail::Plane plane_;
   std::optional<FewReferences> few_;
-  double cost_ = 0, overlap_ = 0;
+  double cost_ = 0, overlap_ = 0, areas_ = 0;
 };
 
 /// At each node the cheaper of the best division of whole references and the best plane to cut at (Stich, Friedrich,
@@ -73,9 +76,12 @@ class SpatialSplit {
     const WholeDivision whole(order_.references(subset), subset, own_.bins);
     const SpatialPlane spatial =
         whole.overlap() > least_overlap_ ? find_spatial(subset, whole.cost(), most) : SpatialPlane{};
-    const double cost = spatial.is_found() ? spatial.cost : whole.cost();
-    if (subset.count() <= shared_.leaf_size && (std::isinf(cost) || detail::leaf_is_cheaper(subset, cost, shared_))) {
-      return std::nullopt;
+    if (subset.count() <= shared_.leaf_size) {
+      if (!spatial.is_found() && !whole.is_found()) return std::nullopt;
+      const detail::AreaSums sums =
+          spatial.is_found() ? detail::AreaSums{half_area(spatial.below) + half_area(spatial.above), spatial.cost}
+                             : whole.sums();
+      if (detail::leaf_is_cheaper(subset, sums, shared_)) return std::nullopt;
     }
     Halves halves = spatial.is_found() ? order_.cut(subset, spatial, clipper_) : divide_whole(subset, whole, most);
     order_.make_room(subset, halves);
@@ -90,7 +96,7 @@ class SpatialSplit {
     if (subset.spare == 0) return {};
     double cost = own_.favour * object_cost;
     if (subset.count() <= shared_.leaf_size) {
-      const double leaf = subset.count() - shared_.inner_cost / shared_.primitive_cost;
+      const double leaf = subset.count() + (shared_.leaf_cost - shared_.inner_cost) / shared_.primitive_cost;
       cost = std::min(cost, leaf * half_area(subset.bounds));
     }
     const SpatialSlices slices(subset.bounds, own_.spatial_bins);
