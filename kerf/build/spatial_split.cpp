@@ -17,23 +17,23 @@ class WholeDivision {
  public:
   WholeDivision(std::span<const Reference> references, const Subset& subset, uint32_t bin_count)
       : slices_(subset.centers, detail::bins_for(subset.count(), bin_count)) {
-    Box3f left, right;
+    Box4 left = Box4::empty(), right = left;
     if (subset.count() <= std::min(bin_count, FewReferences::kMost)) {
       few_.emplace(references);
       cost_ = few_->cost();
-      if (is_found()) left = few_->left_bounds();
-      if (is_found()) right = few_->right_bounds();
+      if (is_found()) left = Box4::of(few_->left_bounds());
+      if (is_found()) right = Box4::of(few_->right_bounds());
     } else {
       detail::Bins bins;
       detail::fill_parallel(references, slices_, bins);
       plane_ = detail::cheapest_plane(bins, slices_);
       cost_ = plane_.cost;
       for (uint32_t i = 0; is_found() && i < slices_.bins; ++i) {
-        (i < plane_.bin ? left : right).extend(bins[plane_.axis][i].box());
+        (i < plane_.bin ? left : right).extend(bins[plane_.axis][i].box);
       }
     }
-    overlap_ = half_area(is_found() ? intersected(left, right) : subset.bounds);
-    areas_ = half_area(left) + half_area(right);
+    overlap_ = half_area(is_found() ? intersected(left.box(), right.box()) : subset.bounds);
+    if (is_found()) areas_ = left.half_area() + right.half_area();
   }
 
   bool is_found() const { return !std::isinf(cost_); }
