@@ -120,7 +120,7 @@ class AxisSearch {
     span.last = std::clamp(span.last, first_plane_ - 1, last_plane_);
     if (span.first == span.last) return boxes[span.first].extend(Box4::of(reference));
     const uint32_t middle = (span.first + span.last + 1) / 2;
-    const ClippedBoxes parts = clipper_(reference, axis_, slices_.plane(axis_, middle));
+    const ClippedBoxes parts = clipper_.guess(reference, axis_, slices_.plane(axis_, middle));
     add_box(parts.below, {span.first, middle - 1}, boxes);
     add_box(parts.above, {middle, span.last}, boxes);
   }
