@@ -9,7 +9,7 @@ namespace {
 /// Of this builder, besides what all top-down builders share.
 struct SpatialSplitOptions {
   uint32_t bins, spatial_bins;
-  double overlap, favour;
+  double overlap, node_overlap, favour;
 };
 
 /// The best division of whole references, as BinnedSah finds it.
@@ -75,7 +75,9 @@ class SpatialSplit {
     const uint64_t most = detail::capacity(shared_.leaf_size, shared_.max_depth - depth - 1);
     const WholeDivision whole(order_.references(subset), subset, own_.bins);
     const SpatialPlane spatial =
-        whole.overlap() > least_overlap_ ? find_spatial(subset, whole.cost(), most) : SpatialPlane{};
+        whole.overlap() > std::max(least_overlap_, own_.node_overlap * half_area(subset.bounds))
+            ? find_spatial(subset, whole.cost(), most)
+            : SpatialPlane{};
     if (subset.count() <= shared_.leaf_size) {
       if (!spatial.is_found() && !whole.is_found()) return std::nullopt;
       const detail::AreaSums sums =
@@ -177,7 +179,8 @@ Bvh build_spatial_split(BuildInput input, const OptionValues& options) {
                                                   input.limit.bytes / kSpatialSplitBytes}));
   SpatialOrder order(std::move(input.references), room);
   SpatialSplit divider(order, input.clipper,
-                       {bins, static_cast<uint32_t>(options["spatial_bins"]), options["overlap"], options["favour"]},
+                       {bins, static_cast<uint32_t>(options["spatial_bins"]), options["overlap"],
+                        options["node_overlap"], options["favour"]},
                        shared);
   TreePart tree = detail::build_parts(divider, order.whole(), shared, input.limit);
   HeldBytes slots(room * sizeof(LeafSlot));
