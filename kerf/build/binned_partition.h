@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "kerf/build/box4.h"
 #include "kerf/build/reference_order.h"
+#include "kerf/references/box4.h"
 
 namespace kerf {
 namespace detail {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <span>
 
-#include "kerf/build/box4.h"
+#include "kerf/references/box4.h"
 
 namespace kerf {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "kerf/base/parallel.h"
-#include "kerf/build/box4.h"
 #include "kerf/build/top_down.h"
+#include "kerf/references/box4.h"
 
 namespace kerf::detail {
 

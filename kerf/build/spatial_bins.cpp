@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "kerf/base/parallel.h"
-#include "kerf/build/box4.h"
+#include "kerf/references/box4.h"
 
 namespace kerf {
 namespace {
