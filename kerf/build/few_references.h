@@ -17,7 +17,11 @@ class FewReferences {
 
   /// Of at least two references, at most kMost.
   explicit FewReferences(std::span<const Reference> references) : references_(references) {
-    for (uint32_t axis = 0; axis < 3; ++axis) try_axis(axis);
+    if (references.size() == 2) {
+      divide_two();
+    } else {
+      for (uint32_t axis = 0; axis < 3; ++axis) try_axis(axis);
+    }
   }
 
   /// Area times count, both sides added; infinite: all centres are in one place.
@@ -44,6 +48,21 @@ class FewReferences {
     return box.box();
   }
 
+  float key(size_t i, uint32_t axis) const { return references_[i].lower[axis] + references_[i].upper[axis]; }
+
+  /// Most often there are two, and the cost is the same along all axes.
+  void divide_two() {
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+      const float first = key(0, axis), second = key(1, axis);
+      if (first == second) continue;
+      cost_ = Box4::of(references_[0]).half_area() + Box4::of(references_[1]).half_area();
+      left_ = 1;
+      best_[0] = first < second ? 0 : 1;
+      best_[1] = first < second ? 1 : 0;
+      return;
+    }
+  }
+
   /// Where each of the keys goes: behind all that are less, and those equal to it before it.
   static void put_in_order(const std::array<float, kMost>& keys, size_t count, Order& order) {
     std::array<uint8_t, kMost> place{};
@@ -60,7 +79,7 @@ class FewReferences {
   void try_axis(uint32_t axis) {
     const size_t count = references_.size();
     std::array<float, kMost> keys;
-    for (size_t i = 0; i < count; ++i) keys[i] = references_[i].lower[axis] + references_[i].upper[axis];
+    for (size_t i = 0; i < count; ++i) keys[i] = key(i, axis);
     Order order;
     put_in_order(keys, count, order);
     if (keys[order[0]] == keys[order[count - 1]]) return;

@@ -111,7 +111,8 @@ inline constexpr LayoutEntry kQuantisedBvh8Layout = {
     make_quantised_bvh8_structure,
     true,
     true,
-    kQuantisedBytes};
+    kQuantisedBytes,
+    wide_tree_costs};
 
 std::unique_ptr<Structure> make_late_split_structure(Bvh bvh, const StructureInput& input, const OptionValues& options);
 inline constexpr OptionSpec kLateSplitOptions[] = {
