@@ -12,6 +12,7 @@ class Stream {
   using Tracer = WideTracer<typename Tree::Layout>;
   using Node = typename Tree::Node;
   using Child = typename Tree::Child;
+  using Sides = typename Tree::Sides;
 
  public:
   Stream(const Tracer& tracer, StreamMemory& memory)
@@ -66,10 +67,12 @@ class Stream {
     const Box d;
     uint32_t all = 0;
     for (uint32_t part = 0; part < kWidth; part += hn::MaxLanes(d)) {
-      const auto side = [&](uint32_t axis, uint32_t far) {
-        return Tree::Sides::load(d, node, axis, near_upper[axis] ^ far, part);
-      };
-      const auto x0 = side(0, 0), x1 = side(0, 1), y0 = side(1, 0), y1 = side(1, 1), z0 = side(2, 0), z1 = side(2, 1);
+      const auto x0 = Sides::template load<0>(d, node, near_upper[0], part);
+      const auto x1 = Sides::template load<0>(d, node, near_upper[0] ^ 1, part);
+      const auto y0 = Sides::template load<1>(d, node, near_upper[1], part);
+      const auto y1 = Sides::template load<1>(d, node, near_upper[1] ^ 1, part);
+      const auto z0 = Sides::template load<2>(d, node, near_upper[2], part);
+      const auto z1 = Sides::template load<2>(d, node, near_upper[2] ^ 1, part);
       auto sum = hn::Zero(d);
       for (uint32_t i = 0; i < task.count; ++i) {
         const StreamRay& ray = rays_[lists_[task.first + i]];
@@ -92,7 +95,7 @@ class Stream {
       }
       hn::Store(sum, d, sums + part);
     }
-    return all & Tree::Sides::places(node);
+    return all & Sides::places(node);
   }
 
   /// Lists each child's rays and puts the children upon the stack, the earliest entered on top, for any hit the
