@@ -92,8 +92,9 @@ std::vector<std::pair<std::string, Change>> changes() {
 }
 
 /// Each geometry is seen by rays with its own bit, and the first by all.
+/// With one bit in common: rays that have it need not look at masks, others do.
 std::vector<Geometry> masked(std::vector<Geometry> geometries) {
-  for (uint32_t i = 1; i < geometries.size(); ++i) geometries[i].mask = 1U << i;
+  for (uint32_t i = 1; i < geometries.size(); ++i) geometries[i].mask = 1U << i | 1U << 31;
   return geometries;
 }
 
@@ -122,8 +123,7 @@ NastyRays nasty_rays(const MovingThings& things, const std::vector<Geometry>& ge
                      float size, size_t of_each) {
   NastyRays all;
   Random random(11);
-  const Float4 lower{bounds.lower.x, bounds.lower.y, bounds.lower.z, 0};
-  const Float4 upper{bounds.upper.x, bounds.upper.y, bounds.upper.z, 0};
+  const float largest_coordinate = largest(max(abs(bounds.lower), abs(bounds.upper)));
   for (const auto& [name, change] : changes()) {
     for (size_t i = 0; i < of_each; ++i) {
       Ray ray = ray_at(things, size, random);
@@ -138,7 +138,7 @@ NastyRays nasty_rays(const MovingThings& things, const std::vector<Geometry>& ge
       }
       all.rays.push_back(ray);
       all.hits += all.expected.back() ? 1 : 0;
-      const WideRay wide(ray, lower, upper);
+      const WideRay wide(ray, largest_coordinate);
       EXPECT_EQ(wide.valid, PreparedRay(ray).valid) << name << ", size " << size;
       if (wide.valid) wide.is_fused ? ++all.fused : ++all.not_fused;
     }
@@ -168,7 +168,8 @@ TEST(WideBvh, TheSameHitsOnEveryInstructionSet) {
       const ScopedVariable isa("KERF_ISA", std::string(set));
       for (const std::string structure :
            {"brute_force", "binned_sah+bvh4", "binned_sah+bvh8", "early_split(budget=3)+binned_sah+bvh4",
-            "spatial_split+bvh8", "lbvh(leaf=1)+bvh8(leaf_cost=0,triangle_cost=10)", "binned_sah(leaf=8)+bvh4"}) {
+            "spatial_split+bvh8", "lbvh(leaf=1)+bvh8(leaf_cost=0,triangle_cost=10)", "binned_sah(leaf=8)+bvh4",
+            "binned_sah+quantised_bvh8", "early_split(budget=3)+ploc+quantised_bvh8"}) {
         Scene scene;
         for (const Geometry& geometry : geometries) scene.add(geometry);
         EXPECT_EQ(scene.build({.structure = structure}).instruction_set, set);

@@ -14,6 +14,12 @@ namespace detail {
 inline constexpr uint32_t kMostBins = 256;
 inline constexpr size_t kBinGrain = 32768;  // references that one task bins
 
+/// How many slices a node of so many references is worth, at most `most`.
+inline uint32_t bins_for(uint32_t references, uint32_t most) {
+  constexpr uint32_t kFewest = 8, kEach = 8;
+  return std::min(most, kFewest + references / kEach);
+}
+
 /// The references whose centres lie in one slice of a node. Two registers and a count; the fourth lanes mean nothing.
 /// Without initial values: a node uses few of kMostBins, and setting all of them up was measured at a quarter of the
 /// build.
@@ -27,9 +33,9 @@ struct Bin {
     upper = -lower;
     count = 0;
   }
-  void add(const Reference& reference) {
-    lower = min(load4(&reference.lower.x), lower);
-    upper = max(load4(&reference.upper.x), upper);
+  void add(Float4 from, Float4 to) {
+    lower = min(from, lower);
+    upper = max(to, upper);
     ++count;
   }
   void add(const Bin& other) {
@@ -38,36 +44,45 @@ struct Bin {
     count += other.count;
   }
   Box3f box() const { return {{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}}; }
-  /// Area times count.
-  double cost() const { return half_area(box()) * count; }
+  /// Half the area times count; not of an empty one.
+  double cost() const {
+    const Float4 extent = upper - lower;
+    const double x = extent[0], y = extent[1], z = extent[2];
+    return (x * (y + z) + y * z) * count;
+  }
 };
 static_assert(offsetof(Reference, lower) == 0 && offsetof(Reference, upper) == 16, "loaded as registers");
 
 /// Which slice a reference's centre lies in, along each axis.
 struct Slices {
-  Vec3f first, scale;
+  Float4 first, scale;
+  Float4 last;  ///< the number of the last slice
   uint32_t bins;
   bool usable[3];
 
-  Slices(const Box3f& centers, uint32_t bin_count) : first(centers.lower), bins(bin_count) {
+  Slices(const Box3f& centers, uint32_t bin_count) : first{}, scale{}, bins(bin_count) {
+    const auto count = static_cast<float>(bins);
+    last = Float4{count, count, count, count} - 1;
     for (uint32_t axis = 0; axis < 3; ++axis) {
-      scale[axis] = static_cast<float>(bins) / (centers.upper[axis] - centers.lower[axis]);
-      usable[axis] = std::isfinite(scale[axis]);  // else all centres are equal, or as good as
+      const float per_length = count / (centers.upper[axis] - centers.lower[axis]);
+      usable[axis] = std::isfinite(per_length);  // else all centres are equal, or as good as
+      first[axis] = centers.lower[axis];
+      scale[axis] = usable[axis] ? per_length : 0;
     }
   }
-  uint32_t operator()(const Reference& reference, uint32_t axis) const {
-    const auto bin = static_cast<uint32_t>((center2(reference, axis) - first[axis]) * scale[axis]);
-    return bin < bins ? bin : bins - 1;
-  }
+  /// A number of the slice along each axis and a fraction.
+  Float4 places(Float4 center2) const { return min((center2 - first) * scale, last); }
 };
 
 using Bins = std::array<std::array<Bin, kMostBins>, 3>;
 
 inline void fill(std::span<const Reference> references, const Slices& slices, Bins& bins) {
   for (auto& line : bins) std::for_each_n(line.begin(), slices.bins, [](Bin& bin) { bin.clear(); });
-  for (uint32_t axis = 0; axis < 3; ++axis) {
-    if (!slices.usable[axis]) continue;
-    for (const Reference& reference : references) bins[axis][slices(reference, axis)].add(reference);
+  for (const Reference& reference : references) {
+    const Float4 lower = load4(&reference.lower.x), upper = load4(&reference.upper.x);
+    const Float4 places = slices.places(lower + upper);
+    for (uint32_t axis = 0; axis < 3; ++axis)
+      bins[axis][static_cast<uint32_t>(static_cast<int32_t>(places[axis]))].add(lower, upper);
   }
 }
 
@@ -116,6 +131,22 @@ inline Plane cheapest_plane(const Bins& bins, const Slices& slices) {
   return best;
 }
 
+/// Whether a reference's centre lies below a plane.
+class BelowPlane {
+ public:
+  BelowPlane(const Slices& slices, const Plane& plane)
+      : axis_(plane.axis),
+        first_(slices.first[axis_]),
+        scale_(slices.scale[axis_]),
+        bin_(static_cast<float>(plane.bin)) {}
+
+  bool operator()(const Reference& reference) const { return (center2(reference, axis_) - first_) * scale_ < bin_; }
+
+ private:
+  uint32_t axis_;
+  float first_, scale_, bin_;
+};
+
 }  // namespace detail
 
 /// The cheapest plane between slices of equal width, by the surface area heuristic (Wald 2007).
@@ -128,12 +159,12 @@ class BinnedSah : public ReferenceOrder {
       const FewReferences division(references(subset));
       return division.is_divided() ? std::optional(arrange(subset, division)) : std::nullopt;
     }
-    const detail::Slices slices(subset.centers, bins_);
+    const detail::Slices slices(subset.centers, detail::bins_for(subset.count(), bins_));
     detail::Bins bins;
     detail::fill_parallel(references(subset), slices, bins);
     const detail::Plane plane = detail::cheapest_plane(bins, slices);
     if (std::isinf(plane.cost)) return std::nullopt;
-    return partition(subset, [&](const Reference& r) { return slices(r, plane.axis) < plane.bin; });
+    return partition(subset, detail::BelowPlane(slices, plane));
   }
 
  private:

@@ -20,7 +20,7 @@ constexpr auto with_shared(const OptionSpec (&own)[kOwn]) {
   return specs;
 }
 
-constexpr OptionSpec kBins = {"bins", "slices along each axis; the planes tried lie between them", 32, 2, 256, true};
+constexpr OptionSpec kBins = {"bins", "slices along each axis, fewer in small nodes; the planes tried lie between them", 32, 2, 256, true};
 constexpr OptionSpec kSeed = {"seed", "another number gives another tree", 1, 0, 0x1p32, true};
 
 constexpr auto kBinnedOptions = with_shared({kBins, {"planes", "the same as bins = planes + 1", 31, 1, 255, true}});

@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "kerf/base/float4.h"
 #include "kerf/references/reference.h"
 
 namespace kerf {
@@ -44,32 +45,49 @@ class FewReferences {
     return box;
   }
 
+  /// Half the area of a box in registers.
+  static double area(Float4 lower, Float4 upper) {
+    const Float4 extent = upper - lower;
+    const double x = extent[0], y = extent[1], z = extent[2];
+    return x * (y + z) + y * z;
+  }
+  Float4 lower(size_t i) const { return load4(&references_[i].lower.x); }
+  Float4 upper(size_t i) const { return load4(&references_[i].upper.x); }
+
+  /// Where each of the keys goes: behind all that are less, and those equal to it before it.
+  static void put_in_order(const std::array<float, kMost>& keys, size_t count, Order& order) {
+    std::array<uint8_t, kMost> place{};
+    for (uint32_t i = 1; i < count; ++i) {
+      for (uint32_t j = 0; j < i; ++j) {
+        const bool stays = keys[j] <= keys[i];
+        place[i] += stays ? 1 : 0;
+        place[j] += stays ? 0 : 1;
+      }
+    }
+    for (uint32_t i = 0; i < count; ++i) order[place[i]] = static_cast<uint8_t>(i);
+  }
+
   void try_axis(uint32_t axis) {
     const size_t count = references_.size();
     std::array<float, kMost> keys;
+    for (size_t i = 0; i < count; ++i) keys[i] = references_[i].lower[axis] + references_[i].upper[axis];
     Order order;
-    for (size_t i = 0; i < count; ++i) {
-      const float key = references_[i].lower[axis] + references_[i].upper[axis];
-      size_t place = i;
-      for (; place > 0 && keys[place - 1] > key; --place) {
-        keys[place] = keys[place - 1];
-        order[place] = order[place - 1];
-      }
-      keys[place] = key;
-      order[place] = static_cast<uint8_t>(i);
-    }
-    if (keys[0] == keys[count - 1]) return;
+    put_in_order(keys, count, order);
+    if (keys[order[0]] == keys[order[count - 1]]) return;
     std::array<double, kMost> right;
-    Box3f box;
+    Float4 from = lower(order[count - 1]), to = upper(order[count - 1]);
     for (size_t i = count - 1; i > 0; --i) {
-      box.extend(references_[order[i]].bounds());
-      right[i] = half_area(box) * static_cast<double>(count - i);
+      from = min(lower(order[i]), from);
+      to = max(upper(order[i]), to);
+      right[i] = area(from, to) * static_cast<double>(count - i);
     }
-    box = {};
+    from = lower(order[0]);
+    to = upper(order[0]);
     for (size_t i = 1; i < count; ++i) {
-      box.extend(references_[order[i - 1]].bounds());
-      const double cost = half_area(box) * static_cast<double>(i) + right[i];
-      if (keys[i - 1] == keys[i] || !(cost < cost_)) continue;
+      from = min(lower(order[i - 1]), from);
+      to = max(upper(order[i - 1]), to);
+      const double cost = area(from, to) * static_cast<double>(i) + right[i];
+      if (keys[order[i - 1]] == keys[order[i]] || !(cost < cost_)) continue;
       cost_ = cost;
       left_ = static_cast<uint32_t>(i);
       best_ = order;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "kerf/build/few_references.h"
+#include "kerf/build/side_by_side.h"
 #include "kerf/build/top_down.h"
 
 namespace kerf {
@@ -20,11 +21,7 @@ class ReferenceOrder {
   explicit ReferenceOrder(std::vector<Reference> references)
       : references_(std::move(references)), held_(references_.capacity() * sizeof(Reference)) {}
 
-  Subset whole() const {
-    Subset subset{0, static_cast<uint32_t>(references_.size()), {}, {}};
-    for (const Reference& reference : references_) add(subset, reference);
-    return subset;
-  }
+  Subset whole() const { return detail::measured(references_, 0, static_cast<uint32_t>(references_.size())); }
 
   const Reference& reference(uint32_t i) const { return references_[i]; }
   void free_references() {
@@ -47,10 +44,7 @@ class ReferenceOrder {
  protected:
   /// The two parts as the references stand.
   Halves halves_at(const Subset& subset, uint32_t middle) const {
-    Halves halves{{subset.begin, middle, {}, {}}, {middle, subset.end, {}, {}}};
-    for (uint32_t i = subset.begin; i < middle; ++i) add(halves.left, references_[i]);
-    for (uint32_t i = middle; i < subset.end; ++i) add(halves.right, references_[i]);
-    return halves;
+    return {detail::measured(references_, subset.begin, middle), detail::measured(references_, middle, subset.end)};
   }
 
   std::span<const Reference> references(const Subset& subset) const {
@@ -60,30 +54,13 @@ class ReferenceOrder {
   /// References for which goes_left() holds come first.
   template <class F>
   Halves partition(const Subset& subset, F&& goes_left) {
-    Halves halves{{subset.begin, subset.begin, {}, {}}, {subset.end, subset.end, {}, {}}};
-    uint32_t low = subset.begin, high = subset.end;
-    while (low < high) {
-      if (goes_left(references_[low])) {
-        add(halves.left, references_[low++]);
-      } else {
-        add(halves.right, references_[low]);
-        std::swap(references_[low], references_[--high]);
-      }
-    }
-    halves.left.end = low;
-    halves.right.begin = low;
-    return halves;
+    return detail::put_side_by_side(references_, subset, goes_left);
   }
 
   /// As few references are best divided; they must be.
   Halves arrange(const Subset& subset, const FewReferences& division) {
     division.arrange({references_.data() + subset.begin, subset.count()});
     return halves_at(subset, subset.begin + division.left());
-  }
-
-  static void add(Subset& subset, const Reference& reference) {
-    subset.bounds.extend(reference.bounds());
-    subset.centers.extend(reference.lower + reference.upper);
   }
 
   std::vector<Reference> references_;

@@ -95,11 +95,7 @@ SpatialOrder::SpatialOrder(std::vector<Reference> references, size_t room)
   references_.resize(room);
 }
 
-Subset SpatialOrder::measured(uint32_t begin, uint32_t end) const {
-  Subset subset{begin, end, {}, {}};
-  for (uint32_t i = begin; i < end; ++i) add(subset, references_[i]);
-  return subset;
-}
+Subset SpatialOrder::measured(uint32_t begin, uint32_t end) const { return detail::measured(references_, begin, end); }
 
 Halves SpatialOrder::cut(const Subset& subset, const SpatialPlane& plane, const Clipper& clipper) {
   // First those below, then those above, last those across.

@@ -16,7 +16,7 @@ struct SpatialSplitOptions {
 class WholeDivision {
  public:
   WholeDivision(std::span<const Reference> references, const Subset& subset, uint32_t bin_count)
-      : slices_(subset.centers, bin_count) {
+      : slices_(subset.centers, detail::bins_for(subset.count(), bin_count)) {
     Box3f left, right;
     if (subset.count() <= std::min(bin_count, FewReferences::kMost)) {
       few_.emplace(references);
@@ -28,7 +28,7 @@ class WholeDivision {
       detail::fill_parallel(references, slices_, bins);
       plane_ = detail::cheapest_plane(bins, slices_);
       cost_ = plane_.cost;
-      for (uint32_t i = 0; is_found() && i < bin_count; ++i) {
+      for (uint32_t i = 0; is_found() && i < slices_.bins; ++i) {
         (i < plane_.bin ? left : right).extend(bins[plane_.axis][i].box());
       }
     }
@@ -43,7 +43,7 @@ class WholeDivision {
   Halves apply(SpatialOrder& order, const Subset& subset) const {
     if (!is_found()) return order.halve(subset);
     if (few_) return order.arrange(subset, *few_);
-    return order.partition(subset, [&](const Reference& r) { return slices_(r, plane_.axis) < plane_.bin; });
+    return order.partition(subset, detail::BelowPlane(slices_, plane_));
   }
 
  private:
@@ -68,6 +68,7 @@ class SpatialSplit {
 
   std::optional<Halves> divide(const Subset& subset, uint32_t depth) {
     if (subset.count() == 1 || depth == shared_.max_depth) return std::nullopt;
+    if (subset.count() <= shared_.leaf_size && detail::leaf_is_cheapest(subset, shared_)) return std::nullopt;
     const uint64_t most = detail::capacity(shared_.leaf_size, shared_.max_depth - depth - 1);
     const WholeDivision whole(order_.references(subset), subset, own_.bins);
     const SpatialPlane spatial =

@@ -157,6 +157,11 @@ inline bool leaf_is_cheaper(const Subset& subset, double below, const TopDownOpt
   return options.primitive_cost * subset.count() * area <= options.inner_cost * area + options.primitive_cost * below;
 }
 
+/// Is it, whatever the halves?
+inline bool leaf_is_cheapest(const Subset& subset, const TopDownOptions& options) {
+  return options.primitive_cost * subset.count() <= options.inner_cost;
+}
+
 /// A partition with the leaf decision and the depth bound.
 template <Partition P>
 class TopDown {
@@ -166,7 +171,9 @@ class TopDown {
   /// The two halves, or nothing if the subset shall be a leaf.
   std::optional<Halves> divide(const Subset& subset, uint32_t depth) {
     const bool fits_leaf = subset.count() <= options_.leaf_size;
-    if (subset.count() == 1 || depth == options_.max_depth) return std::nullopt;
+    if (subset.count() == 1 || depth == options_.max_depth || (fits_leaf && leaf_is_cheapest(subset, options_))) {
+      return std::nullopt;
+    }
     std::optional<Halves> halves = partition_.split(subset);
     if (!halves && fits_leaf) return std::nullopt;
     // Where no plane divides, or a lopsided one would break the depth bound further down: equal counts keep it.

@@ -17,7 +17,8 @@ struct QuantisedChild {
   /// Kind 0: an inner node, by number. Kinds 1 to 24: a leaf of triangles with so many different corners, by the place
   /// of its QuantisedLeaf. kSlots: a leaf of any primitives, as WideChild has it.
   static constexpr uint32_t kKindBits = 5, kInner = 0, kSlots = 31;
-  static_assert(QuantisedLeaf::kMostCorners < kSlots);
+  static constexpr uint32_t kEnd = 30;  ///< no child: what kernels put below those that wait
+  static_assert(QuantisedLeaf::kMostCorners < kEnd);
 
   uint32_t word = 0;
 

@@ -17,6 +17,7 @@ struct WideChild {
   /// Kind 0: an inner node, by number. Kinds 1 to 8: a leaf of so many triangles, by the place of its TriangleLeaf.
   /// kSlots: a leaf of any primitives, by the place of its slots, which follow a unit that begins with their number.
   static constexpr uint32_t kKindBits = 4, kInner = 0, kSlots = 9;
+  static constexpr uint32_t kEnd = 15;  ///< no child: what kernels put below those that wait
 
   uint32_t word = 0;
 

@@ -70,18 +70,25 @@ class Stages {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// The options of a builder or optimiser, with leaves as small as the layout needs them.
-OptionValues options_for(const Stage& stage, const LayoutEntry& layout) {
+/// The options of a builder or optimiser, with leaves as small as the layout needs them, and what a primitive costs in
+/// the layout where that was not given.
+OptionValues options_for(const Stage& stage, const LayoutEntry& layout, bool only_triangles) {
   OptionValues options = stage.options;
-  const auto is_leaf = [](const OptionSpec& spec) { return spec.name == "leaf"; };
   const std::span<const OptionSpec> specs = stage.entry->options;
-  if (layout.leaf_size == 0 || std::none_of(specs.begin(), specs.end(), is_leaf)) return options;
+  const auto has = [&](std::string_view option) {
+    return std::any_of(specs.begin(), specs.end(), [&](const OptionSpec& spec) { return spec.name == option; });
+  };
   const std::string name(stage.entry->name);
-  if (options["leaf"] > layout.leaf_size && !options.is_set("leaf")) {
+  if (layout.leaf_size > 0 && has("leaf") && options["leaf"] > layout.leaf_size) {
+    if (options.is_set("leaf")) {
+      throw Error(ErrorCode::invalid_option, std::string(layout.name),
+                  "it needs leaves of at most " + std::to_string(layout.leaf_size) + ": leave out 'leaf' of " + name);
+    }
     options.set(name, "leaf", layout.leaf_size);
-  } else if (options["leaf"] > layout.leaf_size) {
-    throw Error(ErrorCode::invalid_option, std::string(layout.name),
-                "it needs leaves of at most " + std::to_string(layout.leaf_size) + ": leave out 'leaf' of " + name);
+  }
+  constexpr std::string_view kCost = "primitive_cost";
+  if (only_triangles && layout.triangle_cost != 1 && has(kCost) && !options.is_set(kCost)) {
+    options.set(name, kCost, layout.triangle_cost);
   }
   return options;
 }
@@ -191,7 +198,10 @@ void Scene::Built::make_structure(StructureInput input, std::span<const Stage> m
   input.held.release();
   BuildInput given(std::exchange(input.references, {}), geometry_clipper(all), input.limit);
   given.most = most_references;
-  Bvh bvh = builder.build(std::move(given), options_for(makers[0], layout));
+  const bool only_triangles = std::all_of(all.begin(), all.end(), [](const Geometry& geometry) {
+    return std::holds_alternative<TriangleMesh>(geometry.shapes);
+  });
+  Bvh bvh = builder.build(std::move(given), options_for(makers[0], layout, only_triangles));
   HeldBytes tree(bvh.bytes());
   input.is_split = bvh.slots.size() > kept;  // some builders split
   if (input.is_split) mark_repeated(bvh, geometries);
@@ -200,7 +210,7 @@ void Scene::Built::make_structure(StructureInput input, std::span<const Stage> m
     stages.begin(stage);
     const auto& optimiser = *std::get<const OptimiserEntry*>(stage.entry->entry);
     tree.release();
-    bvh = optimiser.optimise(std::move(bvh), options_for(stage, layout), input.limit);
+    bvh = optimiser.optimise(std::move(bvh), options_for(stage, layout, only_triangles), input.limit);
     tree.set(bvh.bytes());
   }
   report.seconds.optimise = stages.lap();

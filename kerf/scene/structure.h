@@ -89,6 +89,8 @@ struct LayoutEntry {
   bool refits = false;     ///< its structures can be refitted
   /// With the Bvh that it is made from; by default a tree and its nodes once more.
   size_t bytes_per_reference = sizeof(LeafSlot) + 4 * sizeof(BvhNode);
+  /// What a triangle's test costs in its leaves, in visits of a node, as builders and optimisers are told.
+  double triangle_cost = 1;
 };
 std::span<const LayoutEntry> layouts();
 

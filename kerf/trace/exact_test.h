@@ -6,7 +6,7 @@
 class ExactTest {
  public:
   explicit ExactTest(const Ray& ray, const WideRay& wide)
-      : z_(static_cast<double>(wide.direction_z)),
+      : z_(static_cast<double>(ray.direction[wide.kz] + 0.0F)),
         shear_x_(static_cast<double>(ray.direction[wide.kx] + 0.0F) / z_),
         shear_y_(static_cast<double>(ray.direction[wide.ky] + 0.0F) / z_) {
     origin_x_ = wide.origin[wide.kx];
@@ -15,8 +15,7 @@ class ExactTest {
   }
 
   template <class Leaf>
-  HWY_INLINE bool hits(const Leaf& leaf, uint32_t i, const WideRay& ray, float limit,
-                       Crossing& crossing) const {
+  HWY_INLINE bool hits(const Leaf& leaf, uint32_t i, const WideRay& ray, float limit, Crossing& crossing) const {
     Corners x, y, z;
     load(leaf, ray.kx, i, x);
     load(leaf, ray.ky, i, y);

@@ -17,12 +17,12 @@ HWY_INLINE hn::Vec<D> ends_of(D d, const uint32_t* words) {
 /// What the tests of boxes in steps need of a ray, in registers.
 ///
 /// A side is base + f size, f from 1 to 2, and its parameter that times inverse plus the offset of WideRay; with the
-/// node's constants S = size inverse and A = base inverse + offset it is f S + A. In position: sizes are 4 M at most
-/// along x, where f is at most 1.5, and 2 M along y and z; so S is off by 6 e M at most, A, which lies as far before the
-/// box as it is large, by 5 e M, the sum by e M. With what WideRay adds up but the rounding of its sum that is
-/// e (14 M + 2 o), which its shift of 16 e (M + o) covers; where S underflows, by 2^-150 of a parameter, the shift is
-/// above 2^-80 and inverse above 2^-50. Without fused operations the side is as float arithmetic rounds it, never inside
-/// the box: see QuantisedNode.
+/// node's constants S = size inverse and A = base inverse + offset it is f S + A. In position, C and o as there: a size
+/// is at most 4 C along x, where f is at most 1.5, and 2 C along y and z; so S is off by 6 e C, A, which lies as far
+/// before the boxes as their size is, by e (5 C + o), the sum by e (C + o); inverse, the offset and a hit's t by
+/// e (2 C + 4 o) as there. That is e (14 C + 6 o), and its shift of 16 e (C + 2 o) covers it; where S underflows, by
+/// 2^-150 of a parameter, the shift is above 2^-80 and inverse above 2^-50. Without fused operations the side is as
+/// float arithmetic rounds it, never inside the box: see QuantisedNode.
 template <bool kFused>
 struct QuantisedBoxTests {
   static constexpr uint32_t kWidth = QuantisedNode::kWidth;
@@ -38,16 +38,16 @@ struct QuantisedBoxTests {
       : inverse_x(all(ray.inverse[0])),
         inverse_y(all(ray.inverse[1])),
         inverse_z(all(ray.inverse[2])),
-        near_x(all(kFused ? ray.near_offset[0] : ray.origin_near[0])),
-        near_y(all(kFused ? ray.near_offset[1] : ray.origin_near[1])),
-        near_z(all(kFused ? ray.near_offset[2] : ray.origin_near[2])),
-        far_x(all(kFused ? ray.far_offset[0] : ray.origin_far[0])),
-        far_y(all(kFused ? ray.far_offset[1] : ray.origin_far[1])),
-        far_z(all(kFused ? ray.far_offset[2] : ray.origin_far[2])),
+        near_x(all(kFused ? ray.near_offset[0] : ray.origin_near(0))),
+        near_y(all(kFused ? ray.near_offset[1] : ray.origin_near(1))),
+        near_z(all(kFused ? ray.near_offset[2] : ray.origin_near(2))),
+        far_x(all(kFused ? ray.far_offset[0] : ray.origin_far(0))),
+        far_y(all(kFused ? ray.far_offset[1] : ray.origin_far(1))),
+        far_z(all(kFused ? ray.far_offset[2] : ray.origin_far(2))),
         t_min(all(ray.t_min)),
-        row_x(ray.near_upper[0] * kWidth),
-        row_y(ray.near_upper[1] * kWidth),
-        row_z(ray.near_upper[2] * kWidth) {}
+        row_x((ray.octant & 1) * kWidth),
+        row_y((ray.octant >> 1 & 1) * kWidth),
+        row_z((ray.octant >> 2 & 1) * kWidth) {}
 
   /// Which children the ray enters within [t_min, limit], and where.
   HWY_INLINE uint32_t enter(const QuantisedNode& node, float limit, float* entry) const {
@@ -97,128 +97,104 @@ struct QuantisedBoxTests {
   };
 };
 
-/// detail::may_hit_triangle() for leaves that share corners: each corner is moved and sheared once.
+/// The tests of a QuantisedLeaf: each corner is moved and sheared once.
 struct QuantisedLeafTests {
   using Lanes = hn::CappedTag<float, QuantisedLeaf::kMost>;
   static constexpr uint32_t kLanes = hn::MaxLanes(Lanes());
 
-  float origin_x, origin_y, origin_z, shear_x, shear_y;
-  uint32_t kx, ky, kz;
+  const WideRay& ray;
 
-  explicit QuantisedLeafTests(const WideRay& ray)
-      : origin_x(ray.origin[ray.kx]),
-        origin_y(ray.origin[ray.ky]),
-        origin_z(ray.origin[ray.kz]),
-        shear_x(ray.shear[ray.kx]),
-        shear_y(ray.shear[ray.ky]),
-        kx(ray.kx),
-        ky(ray.ky),
-        kz(ray.kz) {}
-
-  /// The triangles that the ray may hit, as bits; those left out it surely misses.
-  HWY_INLINE uint32_t may_hit(const QuantisedLeaf& leaf) const {
-    const hn::CappedTag<float, 16> most;
-    const uint32_t all = (2U << (leaf.count() - 1)) - 1;
-    if constexpr (kLanes == QuantisedLeaf::kMost) {
-      if (leaf.corners <= kLanes) [[likely]]
-        return some(Lanes(), OneTable<Lanes>(*this, leaf), leaf, 0) & all;
-      if constexpr (hn::MaxLanes(most) == 16) {
-        if (leaf.corners <= 16) return some(most, OneTable<decltype(most)>(*this, leaf), leaf, 0) & all;
-      }
-    }
-    return many(leaf) & all;
+  /// As of LeafTests.
+  HWY_INLINE uint32_t may_hit(const QuantisedLeaf& leaf) const { return look<false>(leaf, 0, nullptr).maybe; }
+  HWY_INLINE Found find(const QuantisedLeaf& leaf, float limit, Between& between) const {
+    return look<true>(leaf, limit, &between);
   }
 
  private:
-  /// Corners, moved and sheared.
   template <class D>
-  struct Corners {
-    using V = hn::Vec<D>;
-    V x, y, z;
+  using Numbers = hn::Vec<hn::RebindToSigned<D>>;
 
-    HWY_INLINE Corners(const QuantisedLeafTests& ray, const QuantisedLeaf& leaf, uint32_t first)
-        : z(hn::Sub(load(leaf, ray.kz, first), hn::Set(D(), ray.origin_z))) {
-      x = hn::NegMulAdd(hn::Set(D(), ray.shear_x), z, hn::Sub(load(leaf, ray.kx, first), hn::Set(D(), ray.origin_x)));
-      y = hn::NegMulAdd(hn::Set(D(), ray.shear_y), z, hn::Sub(load(leaf, ray.ky, first), hn::Set(D(), ray.origin_y)));
+  template <bool kPlaced>
+  HWY_INLINE Found look(const QuantisedLeaf& leaf, float limit, Between* between) const {
+    const hn::CappedTag<float, 16> most;
+    if constexpr (kLanes == QuantisedLeaf::kMost) {
+      if (leaf.corners <= kLanes) [[likely]]
+        return some<kPlaced>(Lanes(), OneTable<Lanes>(ray, leaf), leaf, 0, limit, between);
+      if constexpr (hn::MaxLanes(most) == 16) {
+        if (leaf.corners <= 16)
+          return some<kPlaced>(most, OneTable<hn::CappedTag<float, 16>>(ray, leaf), leaf, 0, limit, between);
+      }
     }
+    return many<kPlaced>(leaf, limit, between);
+  }
 
-   private:
-    static HWY_INLINE V load(const QuantisedLeaf& leaf, uint32_t axis, uint32_t first) {
-      return hn::LoadU(D(), leaf.column(axis) + first);
-    }
-  };
+  template <class D>
+  static HWY_INLINE SeenCorners<D> corners(D d, const WideRay& ray, const QuantisedLeaf& leaf, uint32_t first) {
+    return SeenFrom{ray}.corners(d, leaf.column(ray.kx) + first, leaf.column(ray.ky) + first,
+                                 leaf.column(ray.kz) + first);
+  }
 
   /// All corners, as many as lanes at most.
   template <class D>
-  struct OneTable : Corners<D> {
-    using V = hn::Vec<D>;
-    using Numbers = hn::Vec<hn::RebindToSigned<D>>;
+  struct OneTable {
+    SeenCorners<D> all;
 
-    HWY_INLINE OneTable(const QuantisedLeafTests& ray, const QuantisedLeaf& leaf) : Corners<D>(ray, leaf, 0) {}
+    HWY_INLINE OneTable(const WideRay& ray, const QuantisedLeaf& leaf) : all(corners(D(), ray, leaf, 0)) {}
 
-    HWY_INLINE void look_up(Numbers numbers, V& at_x, V& at_y, V& at_z) const {
+    HWY_INLINE SeenCorners<D> look_up(Numbers<D> numbers) const {
       const auto in_table = hn::And(numbers, hn::Set(hn::RebindToSigned<D>(), int32_t{hn::MaxLanes(D()) - 1}));
       const auto places = hn::IndicesFromVec(D(), in_table);
-      at_x = hn::TableLookupLanes(this->x, places);
-      at_y = hn::TableLookupLanes(this->y, places);
-      at_z = hn::TableLookupLanes(this->z, places);
+      return {hn::TableLookupLanes(all.x, places), hn::TableLookupLanes(all.y, places),
+              hn::TableLookupLanes(all.z, places)};
     }
   };
 
   /// More of them, in memory.
   struct InMemory {
-    using V = hn::Vec<Lanes>;
-    using Numbers = hn::Vec<hn::RebindToSigned<Lanes>>;
     static constexpr uint32_t kRoom = 1U << QuantisedLeaf::kCornerBits;
 
     HWY_ALIGN float x[kRoom], y[kRoom], z[kRoom];
 
-    HWY_INLINE InMemory(const QuantisedLeafTests& ray, const QuantisedLeaf& leaf) {
+    HWY_INLINE InMemory(const WideRay& ray, const QuantisedLeaf& leaf) {
       const Lanes d;
       for (uint32_t i = 0; i < leaf.corners; i += kLanes) {
-        const Corners<Lanes> corners(ray, leaf, i);
-        hn::Store(corners.x, d, x + i);
-        hn::Store(corners.y, d, y + i);
-        hn::Store(corners.z, d, z + i);
+        const SeenCorners<Lanes> some = corners(d, ray, leaf, i);
+        hn::Store(some.x, d, x + i);
+        hn::Store(some.y, d, y + i);
+        hn::Store(some.z, d, z + i);
       }
     }
-    HWY_INLINE void look_up(Numbers numbers, V& at_x, V& at_y, V& at_z) const {
+    HWY_INLINE SeenCorners<Lanes> look_up(Numbers<Lanes> numbers) const {
       const auto places = hn::And(numbers, hn::Set(hn::RebindToSigned<Lanes>(), int32_t{kRoom - 1}));
-      at_x = hn::GatherIndex(Lanes(), x, places);
-      at_y = hn::GatherIndex(Lanes(), y, places);
-      at_z = hn::GatherIndex(Lanes(), z, places);
+      const Lanes d;
+      return {hn::GatherIndex(d, x, places), hn::GatherIndex(d, y, places), hn::GatherIndex(d, z, places)};
     }
   };
 
-  HWY_NOINLINE uint32_t many(const QuantisedLeaf& leaf) const {
-    const InMemory table(*this, leaf);
-    uint32_t found = 0;
-    for (uint32_t i = 0; i < leaf.count(); i += kLanes) found |= some(Lanes(), table, leaf, i) << i;
+  template <bool kPlaced>
+  HWY_NOINLINE Found many(const QuantisedLeaf& leaf, float limit, Between* between) const {
+    const InMemory table(ray, leaf);
+    Found found;
+    for (uint32_t i = 0; i < leaf.count(); i += kLanes) {
+      const Found more = some<kPlaced>(Lanes(), table, leaf, i, limit, between);
+      found.maybe |= more.maybe << i;
+      found.sure |= more.sure << i;
+    }
     return found;
   }
 
-  template <class D, class Table>
-  HWY_INLINE uint32_t some(D d, const Table& table, const QuantisedLeaf& leaf, uint32_t first) const {
+  template <bool kPlaced, class D, class Table>
+  HWY_INLINE Found some(D /*d*/, const Table& table, const QuantisedLeaf& leaf, uint32_t first, float limit,
+                        Between* between) const {
     const hn::Rebind<uint16_t, D> d16;
     constexpr int kBits = QuantisedLeaf::kCornerBits;
-    const auto words = hn::PromoteTo(
-        hn::RebindToSigned<D>(), hn::LoadU(d16, reinterpret_cast<const uint16_t*>(leaf.words()) + first));
-    hn::Vec<D> ax, ay, az, bx, by, bz, cx, cy, cz;
-    table.look_up(words, ax, ay, az);
-    table.look_up(hn::ShiftRight<kBits>(words), bx, by, bz);
-    table.look_up(hn::ShiftRight<2 * kBits>(words), cx, cy, cz);
-    const auto u = hn::MulSub(cx, by, hn::Mul(cy, bx));
-    const auto v = hn::MulSub(ax, cy, hn::Mul(ay, cx));
-    const auto w = hn::MulSub(bx, ay, hn::Mul(by, ax));
-    const auto sx = hn::Max(hn::Max(hn::Abs(ax), hn::Abs(bx)), hn::Abs(cx));
-    const auto sy = hn::Max(hn::Max(hn::Abs(ay), hn::Abs(by)), hn::Abs(cy));
-    const auto s = hn::Max(sx, sy);
-    const auto depth = hn::Max(hn::Max(hn::Abs(az), hn::Abs(bz)), hn::Abs(cz));
-    // As in LeafTests.
-    const auto error = hn::MulAdd(hn::Mul(s, hn::Add(s, depth)), hn::Set(d, 0x1p-19F), hn::Set(d, 0x1p-120F));
-    const auto low = hn::Min(hn::Min(u, v), w), high = hn::Max(hn::Max(u, v), w);
-    const auto outside = hn::And(hn::Lt(low, hn::Neg(error)), hn::Gt(high, error));
-    return bits_of(d, outside) ^ ((1U << hn::MaxLanes(d)) - 1);
+    const auto words =
+        hn::PromoteTo(hn::RebindToSigned<D>(), hn::LoadU(d16, reinterpret_cast<const uint16_t*>(leaf.words()) + first));
+    const SeenTriangles<D> seen(table.look_up(words), table.look_up(hn::ShiftRight<kBits>(words)),
+                                table.look_up(hn::ShiftRight<2 * kBits>(words)));
+    const uint32_t maybe = seen.may_hit() & (((2U << (leaf.count() - 1)) - 1) >> first);
+    if (!kPlaced || maybe == 0) return {maybe, 0};
+    return seen.find(ray, maybe, limit, between->least + first, between->most + first);
   }
 };
 

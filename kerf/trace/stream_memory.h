@@ -7,7 +7,7 @@
 #include <span>
 #include <type_traits>
 
-#include "kerf/geometry/hit.h"
+#include "kerf/trace/nearest_hit.h"
 #include "kerf/trace/wide_ray.h"
 
 namespace kerf {
@@ -23,10 +23,11 @@ static_assert(sizeof(StreamRay) == 64);
 /// The rest of it.
 struct StreamHit {
   WideRay wide;
-  Hit best;
+  NearestHit nearest;
   const Ray* ray;
 
-  StreamHit(const Ray& from, Float4 lower, Float4 upper) : wide(from, lower, upper), ray(&from) { best.t = from.t_max; }
+  StreamHit(const Ray& from, float largest_coordinate)
+      : wide(from, largest_coordinate), nearest(from.t_max), ray(&from) {}
 };
 static_assert(std::is_trivially_destructible_v<StreamHit>);
 
@@ -41,8 +42,8 @@ class StreamMemory {
   StreamMemory() : parts_(new (std::nothrow) Parts) {}
 
   bool is_there() const { return parts_ != nullptr; }
-  const WideRay& make_ray(size_t i, const Ray& from, Float4 lower, Float4 upper) {
-    const auto* made = new (&parts_->hits[i * sizeof(StreamHit)]) StreamHit(from, lower, upper);
+  const WideRay& make_ray(size_t i, const Ray& from, float largest_coordinate) {
+    const auto* made = new (&parts_->hits[i * sizeof(StreamHit)]) StreamHit(from, largest_coordinate);
     const WideRay& wide = made->wide;
     parts_->rays[i] = {from.t_min, from.t_max, wide.inverse, wide.near_offset, wide.far_offset};
     return wide;

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
+#include <limits>
 
 #include "kerf/base/fp_environment.h"
 #include "kerf/base/instruction_set.h"
 #include "kerf/geometry/ray_triangle.h"
 #include "kerf/trace/leaf.h"
+#include "kerf/trace/nearest_hit.h"
 #include "kerf/trace/stream_memory.h"
 #include "kerf/trace/wide_ray.h"
 
@@ -27,126 +30,10 @@ HWY_INLINE uint32_t bits_of(D d, M mask) {
   return bits[0];
 }
 
-/// What the box tests need of a ray, in registers.
-template <uint32_t kWidth, bool kFused>
-struct BoxTests {
-  using Lanes = hn::CappedTag<float, kWidth>;
-  using V = hn::Vec<Lanes>;
-
-  V inverse_x, inverse_y, inverse_z;
-  /// Fused: what is added to the product; else the moved origin.
-  V near_x, near_y, near_z, far_x, far_y, far_z;
-  V t_min;
-  uint32_t row_x, row_y, row_z;  ///< where a node's near sides begin; the far ones begin at that ^ kWidth
-
-  explicit BoxTests(const WideRay& ray)
-      : inverse_x(all(ray.inverse[0])),
-        inverse_y(all(ray.inverse[1])),
-        inverse_z(all(ray.inverse[2])),
-        near_x(all(kFused ? ray.near_offset[0] : ray.origin_near[0])),
-        near_y(all(kFused ? ray.near_offset[1] : ray.origin_near[1])),
-        near_z(all(kFused ? ray.near_offset[2] : ray.origin_near[2])),
-        far_x(all(kFused ? ray.far_offset[0] : ray.origin_far[0])),
-        far_y(all(kFused ? ray.far_offset[1] : ray.origin_far[1])),
-        far_z(all(kFused ? ray.far_offset[2] : ray.origin_far[2])),
-        t_min(all(ray.t_min)),
-        row_x(ray.near_upper[0] * kWidth),
-        row_y((2 + ray.near_upper[1]) * kWidth),
-        row_z((4 + ray.near_upper[2]) * kWidth) {}
-
-  /// Which children the ray enters within [t_min, limit], and where.
-  HWY_INLINE uint32_t enter(const WideNode<kWidth>& node, float limit, float* entry) const {
-    const Lanes d;
-    const float* const sides = &node.sides[0][0][0];
-    uint32_t entered = 0;
-    for (uint32_t i = 0; i < kWidth; i += hn::MaxLanes(d)) {
-      const auto x0 = at(sides + row_x + i, inverse_x, near_x), x1 = at(sides + (row_x ^ kWidth) + i, inverse_x, far_x);
-      const auto y0 = at(sides + row_y + i, inverse_y, near_y), y1 = at(sides + (row_y ^ kWidth) + i, inverse_y, far_y);
-      const auto z0 = at(sides + row_z + i, inverse_z, near_z), z1 = at(sides + (row_z ^ kWidth) + i, inverse_z, far_z);
-      const auto near = hn::Max(hn::Max(x0, y0), hn::Max(z0, t_min));
-      const auto far = hn::Min(hn::Min(x1, y1), hn::Min(z1, hn::Set(d, limit)));
-      hn::Store(near, d, entry + i);
-      entered |= bits_of(d, hn::Le(near, far)) << i;
-    }
-    return entered;
-  }
-
- private:
-  static HWY_INLINE V all(float value) { return hn::Set(Lanes(), value); }
-  static HWY_INLINE V at(const float* sides, V inverse, V shift) {
-    const auto side = hn::Load(Lanes(), sides);
-    if constexpr (kFused) return hn::MulAdd(side, inverse, shift);
-    return hn::Mul(hn::Sub(side, shift), inverse);
-  }
-};
-
-/// detail::may_hit_triangle() for leaves.
-struct LeafTests {
-  using Lanes = hn::CappedTag<float, TriangleLeaf::kMost>;
-  using V = hn::Vec<Lanes>;
-
-  V origin_x, origin_y, origin_z, shear_x, shear_y;
-  uint32_t kx, ky, kz;
-
-  explicit LeafTests(const WideRay& ray)
-      : origin_x(hn::Set(Lanes(), ray.origin[ray.kx])),
-        origin_y(hn::Set(Lanes(), ray.origin[ray.ky])),
-        origin_z(hn::Set(Lanes(), ray.origin[ray.kz])),
-        shear_x(hn::Set(Lanes(), ray.shear[ray.kx])),
-        shear_y(hn::Set(Lanes(), ray.shear[ray.ky])),
-        kx(ray.kx),
-        ky(ray.ky),
-        kz(ray.kz) {}
-
-  /// The triangles that the ray may hit, as bits; those left out it surely misses.
-  HWY_INLINE uint32_t may_hit(const TriangleLeaf& leaf) const {
-    const Lanes d;
-    const float* const xs = leaf.column(0, 0) + size_t{kx} * leaf.count;
-    const float* const ys = leaf.column(0, 0) + size_t{ky} * leaf.count;
-    const float* const zs = leaf.column(0, 0) + size_t{kz} * leaf.count;
-    const size_t next = size_t{3} * leaf.count;
-    if constexpr (hn::MaxLanes(d) == TriangleLeaf::kMost) {
-      return some(xs, ys, zs, next) & ((1U << leaf.count) - 1);
-    } else {
-      uint32_t found = 0;
-      for (uint32_t i = 0; i < leaf.count; i += hn::MaxLanes(d)) {
-        found |= some(xs + i, ys + i, zs + i, next) << i;
-      }
-      return found & ((1U << leaf.count) - 1);
-    }
-  }
-
- private:
-  HWY_INLINE uint32_t some(const float* xs, const float* ys, const float* zs, size_t next) const {
-    const Lanes d;
-    const auto az = hn::Sub(hn::LoadU(d, zs), origin_z);
-    const auto bz = hn::Sub(hn::LoadU(d, zs + next), origin_z);
-    const auto cz = hn::Sub(hn::LoadU(d, zs + 2 * next), origin_z);
-    const auto ax = hn::NegMulAdd(shear_x, az, hn::Sub(hn::LoadU(d, xs), origin_x));
-    const auto bx = hn::NegMulAdd(shear_x, bz, hn::Sub(hn::LoadU(d, xs + next), origin_x));
-    const auto cx = hn::NegMulAdd(shear_x, cz, hn::Sub(hn::LoadU(d, xs + 2 * next), origin_x));
-    const auto ay = hn::NegMulAdd(shear_y, az, hn::Sub(hn::LoadU(d, ys), origin_y));
-    const auto by = hn::NegMulAdd(shear_y, bz, hn::Sub(hn::LoadU(d, ys + next), origin_y));
-    const auto cy = hn::NegMulAdd(shear_y, cz, hn::Sub(hn::LoadU(d, ys + 2 * next), origin_y));
-    const auto u = hn::MulSub(cx, by, hn::Mul(cy, bx));
-    const auto v = hn::MulSub(ax, cy, hn::Mul(ay, cx));
-    const auto w = hn::MulSub(bx, ay, hn::Mul(by, ax));
-    const auto sx = hn::Max(hn::Max(hn::Abs(ax), hn::Abs(bx)), hn::Abs(cx));
-    const auto sy = hn::Max(hn::Max(hn::Abs(ay), hn::Abs(by)), hn::Abs(cy));
-    const auto s = hn::Max(sx, sy);
-    const auto depth = hn::Max(hn::Max(hn::Abs(az), hn::Abs(bz)), hn::Abs(cz));
-    // Where a product overflows, this does, and nothing is left out: a fused operation would take one for infinite and
-    // the other as it is.
-    const auto error = hn::MulAdd(hn::Mul(s, hn::Add(s, depth)), hn::Set(d, 0x1p-19F), hn::Set(d, 0x1p-120F));
-    const auto low = hn::Min(hn::Min(u, v), w), high = hn::Max(hn::Max(u, v), w);
-    // What is not a number counts for neither: Min and Max return one of their operands.
-    const auto outside = hn::And(hn::Lt(low, hn::Neg(error)), hn::Gt(high, error));
-    return bits_of(d, outside) ^ ((1U << hn::MaxLanes(d)) - 1);
-  }
-};
-
 #include "kerf/trace/exact_test.h"
+#include "kerf/trace/leaf_tests.h"
 #include "kerf/trace/quantised_boxes.h"
+#include "kerf/trace/wide_boxes.h"
 
 /// A WideNode's sides as streams take them.
 template <uint32_t kWidth>
@@ -194,73 +81,69 @@ class Walk {
   using Leaf = typename Tree::Leaf;
 
  public:
-  Walk(const Tracer& tracer, const Ray& ray, const WideRay& wide, Hit& best, Counts& counts)
-      : tracer_(tracer), ray_(ray), wide_(wide), best_(best), counts_(counts), boxes_(wide), leaves_(wide) {}
+  Walk(const Tracer& tracer, const Ray& ray, const WideRay& wide, NearestHit& nearest, Counts& counts)
+      : tracer_(tracer), ray_(ray), wide_(wide), nearest_(nearest), counts_(counts) {}
 
+  /// The loop over inner nodes calls nothing, so that what it needs stays in registers.
   HWY_INLINE void run(Child from) {
     constexpr uint32_t kMostWaiting = (kWidth - 1) * kMaxDepth;  // all children but one of each node above
-    uint64_t waiting[kMostWaiting + kWidth];
+    uint64_t waiting[1 + kMostWaiting + kWidth];
     uint64_t* top = waiting;
+    *top++ = key({Child::kEnd}, -std::numeric_limits<float>::infinity());
     const Node* const nodes = tracer_.layout.nodes.data();
+    const typename Tree::template Boxes<kFused> boxes(wide_);
     uint64_t current = key(from, ray_.t_min);
+    float limit = nearest_.hit.t;
     while (true) {
-      counts_.count_nodes(1);
-      const Child child{static_cast<uint32_t>(current)};
-      if (!child.is_leaf()) {
-        const Node& node = nodes[child.number()];
-        HWY_ALIGN float entry[kWidth];
+      while (!child_of(current).is_leaf()) {
+        counts_.count_nodes(1);
         counts_.count_boxes(kWidth);
-        uint32_t entered = boxes_.enter(node, best_.t, entry);
-        if (entered != 0) {
-          current = take(node, entry, entered);
-          if (entered == 0) continue;
-          const uint64_t next = take(node, entry, entered);
-          if constexpr (kAny) {
-            // The larger child first: it stands before the others.
-            for (; entered != 0; ++top) *top = take_last(node, entry, entered);
-            *top++ = next;
-            continue;
-          }
-          if (entered == 0) {
-            *top++ = std::max(current, next);
-            current = std::min(current, next);
-            continue;
-          }
-          uint64_t* const base = top;
-          *top++ = current;
-          *top++ = next;
-          do {
-            *top++ = take(node, entry, entered);
-          } while (entered != 0);
-          sort(base, top);
-          current = *--top;
-          continue;
-        }
-      } else if (test_leaf(child)) {
-        return;
+        const Node& node = nodes[child_of(current).number()];
+        HWY_ALIGN float entry[kWidth];
+        const uint32_t entered = boxes.enter(node, limit, entry);
+        current = entered != 0 ? nearest_of(node, entry, entered, top) : next(top, limit);
       }
-      do {
-        if (top == waiting) return;
-        current = *--top;
-      } while (entry_of(current) > best_.t);
+      const Child leaf = child_of(current);
+      if (leaf.kind() == Child::kEnd) return;
+      counts_.count_nodes(1);
+      if (test_leaf(leaf)) return;
+      limit = nearest_.hit.t;
+      current = next(top, limit);
     }
   }
 
   /// The triangles of `found`, exactly. Whether the walk is over.
-  static HWY_NOINLINE bool test_triangles(const Tracer& tracer, const Ray& ray, const WideRay& wide, Hit& best, const Leaf& triangles, uint32_t found) {
+  static HWY_NOINLINE bool test_triangles(const Tracer& tracer, const Ray& ray, const WideRay& wide,
+                                          NearestHit& nearest, const Leaf& triangles, uint32_t found) {
+    resolve(tracer, ray, wide, nearest);
     const ExactTest exact(ray, wide);
     for (; found != 0; found &= found - 1) {
       const auto i = static_cast<uint32_t>(std::countr_zero(found));
       Crossing crossing;
-      if (!exact.hits(triangles, i, wide, best.t, crossing)) continue;
+      if (!exact.hits(triangles, i, wide, nearest.hit.t, crossing)) continue;
       const LeafSlot slot = triangles.slot(i);
       if ((tracer.geometries[slot.geometry()].mask & ray.mask) == 0) continue;
       const Hit hit{crossing.t, crossing.u, crossing.v, slot.primitive, slot.geometry(), kNone};
-      if (best && !closer(hit, best)) continue;
-      best = hit;
+      if (nearest.hit && !closer(hit, nearest.hit)) continue;
+      nearest.hit = hit;
       if (kAny) return true;
     }
+    nearest.least = nearest.hit.t;
     return false;
+  }
+
+  /// Works the hit out that is to be, if any.
+  static HWY_INLINE void resolve(const Tracer& tracer, const Ray& ray, const WideRay& wide, NearestHit& nearest) {
+    if (nearest.leaf == 0) return;
+    const Leaf triangles = tracer.layout.triangles(Child{nearest.leaf});
+    const LeafSlot slot = triangles.slot(nearest.number);
+    Crossing crossing;
+    [[maybe_unused]] const bool is_hit =
+        ExactTest(ray, wide).hits(triangles, nearest.number, wide, nearest.hit.t, crossing);
+    assert(is_hit && crossing.t >= nearest.least);
+    nearest.hit = {crossing.t, crossing.u, crossing.v, slot.primitive, slot.geometry(), kNone};
+    nearest.least = crossing.t;
+    nearest.leaf = 0;
   }
 
  private:
@@ -269,6 +152,40 @@ class Walk {
     return uint64_t{std::bit_cast<uint32_t>(entry)} << 32 | child.word;
   }
   static HWY_INLINE float entry_of(uint64_t key) { return std::bit_cast<float>(static_cast<uint32_t>(key >> 32)); }
+  static HWY_INLINE Child child_of(uint64_t key) { return {static_cast<uint32_t>(key)}; }
+
+  /// The one on top that is not beyond the limit. The one at the bottom is not.
+  static HWY_INLINE uint64_t next(uint64_t*& top, float limit) {
+    do {
+      --top;
+    } while (entry_of(*top) > limit);
+    return *top;
+  }
+
+  /// Puts all children that are entered on top but the one to go on with, which it returns: the nearest, and below it
+  /// the others in order; for any hit the largest, which stands first.
+  static HWY_INLINE uint64_t nearest_of(const Node& node, const float* entry, uint32_t entered, uint64_t*& top) {
+    const uint64_t first = take(node, entry, entered);
+    if (entered == 0) return first;
+    const uint64_t second = take(node, entry, entered);
+    if constexpr (kAny) {
+      for (; entered != 0; ++top) *top = take_last(node, entry, entered);
+      *top++ = second;
+      return first;
+    }
+    if (entered == 0) {
+      *top++ = std::max(first, second);
+      return std::min(first, second);
+    }
+    uint64_t* const base = top;
+    *top++ = first;
+    *top++ = second;
+    do {
+      *top++ = take(node, entry, entered);
+    } while (entered != 0);
+    sort(base, top);
+    return *--top;
+  }
 
   static HWY_INLINE uint64_t take(const Node& node, const float* entry, uint32_t& entered) {
     const auto i = static_cast<uint32_t>(std::countr_zero(entered));
@@ -294,30 +211,60 @@ class Walk {
 
   /// Whether the walk is over: any hit is enough.
   HWY_INLINE bool test_leaf(Child leaf) {
-    if (leaf.kind() == Child::kSlots) return test_slots(leaf);
+    if (leaf.kind() == Child::kSlots) return test_slots(tracer_, ray_, wide_, nearest_, counts_, leaf);
     const Leaf triangles = tracer_.layout.triangles(leaf);
     if constexpr (Counts::kCounts) {
       for (const LeafSlot& slot : tracer_.layout.slots(leaf)) counts_.count_primitives(std::span(&slot, 1));
     }
-    const uint32_t found = leaves_.may_hit(triangles);
-    return found != 0 && test_triangles(tracer_, ray_, wide_, best_, triangles, found);
+    Between between;
+    const Found found = typename Tree::Leaves{wide_}.find(triangles, nearest_.hit.t, between);
+    if (found.maybe == 0) return false;
+    if ((tracer_.shared_mask & ray_.mask) != 0) {
+      if constexpr (kAny) {
+        if (found.sure != 0) {
+          nearest_.hit.primitive = 0;  // some primitive
+          return true;
+        }
+      } else if (found.sure == found.maybe && take_nearest(leaf, found.sure, between)) {
+        return false;
+      }
+    }
+    return test_triangles(tracer_, ray_, wide_, nearest_, triangles, found.maybe);
   }
 
-  HWY_NOINLINE bool test_slots(Child leaf) {
-    const PreparedRay prepared(ray_);
-    for (const LeafSlot& slot : tracer_.layout.slots(leaf)) {
-      if (test_primitive(tracer_.geometries, slot, prepared, best_, counts_) && kAny) return true;
+  /// Of triangles that the ray surely hits. False if it cannot be told which hit is the nearest.
+  HWY_INLINE bool take_nearest(Child leaf, uint32_t sure, const Between& between) {
+    do {
+      const auto i = static_cast<uint32_t>(std::countr_zero(sure));
+      if (between.most[i] < nearest_.least) {
+        nearest_.hit.t = between.most[i];
+        nearest_.least = between.least[i];
+        nearest_.leaf = leaf.word;
+        nearest_.number = i;
+      } else if (between.least[i] <= nearest_.hit.t) {
+        return false;
+      }
+      sure &= sure - 1;
+    } while (sure != 0);
+    return true;
+  }
+
+  static HWY_NOINLINE bool test_slots(const Tracer& tracer, const Ray& ray, const WideRay& wide, NearestHit& nearest,
+                                      Counts& counts, Child leaf) {
+    resolve(tracer, ray, wide, nearest);
+    const PreparedRay prepared(ray);
+    for (const LeafSlot& slot : tracer.layout.slots(leaf)) {
+      if (test_primitive(tracer.geometries, slot, prepared, nearest.hit, counts) && kAny) return true;
     }
+    nearest.least = nearest.hit.t;
     return false;
   }
 
   const Tracer& tracer_;
   const Ray& ray_;
   const WideRay& wide_;
-  Hit& best_;
+  NearestHit& nearest_;
   Counts& counts_;
-  const typename Tree::template Boxes<kFused> boxes_;
-  const typename Tree::Leaves leaves_;
 };
 
 #include "kerf/trace/wide_stream.h"
@@ -334,21 +281,20 @@ struct Kernel {
   Hit trace(const Ray& ray, Counts& counts) const {
     const StandardFloat standard;
     if (tracer.layout.is_empty()) return {};
-    const Box3f& bounds = tracer.layout.bounds;
-    const Float4 lower{bounds.lower.x, bounds.lower.y, bounds.lower.z, 0};
-    const Float4 upper{bounds.upper.x, bounds.upper.y, bounds.upper.z, 0};
-    const WideRay wide(ray, lower, upper);
+    const WideRay wide(ray, tracer.largest_coordinate);
     if (!wide.valid) return {};
-    Hit best;
-    best.t = wide.t_max;
-    counts.count_boxes(1);
-    if (!wide.enters(lower, upper)) return {};
-    if (wide.is_fused) {
-      Walk<Tree, true, kAny, Counts>(tracer, ray, wide, best, counts).run(tracer.layout.root);
-    } else {
-      Walk<Tree, false, kAny, Counts>(tracer, ray, wide, best, counts).run(tracer.layout.root);
+    if constexpr (Counts::kCounts) {
+      counts.count_boxes(1);
+      if (!wide.enters(tracer.layout.bounds)) return {};
     }
-    return finished(best);
+    NearestHit nearest(wide.t_max);
+    if (wide.is_fused) {
+      Walk<Tree, true, kAny, Counts>(tracer, ray, wide, nearest, counts).run(tracer.layout.root);
+    } else {
+      Walk<Tree, false, kAny, Counts>(tracer, ray, wide, nearest, counts).run(tracer.layout.root);
+    }
+    if (!kAny) Walk<Tree, true, kAny, Counts>::resolve(tracer, ray, wide, nearest);
+    return finished(nearest.hit);
   }
 
   /// Counts are those of single rays.
@@ -370,6 +316,17 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace kerf {
+
+template <class Layout>
+void WideTracer<Layout>::update() {
+  const Vec3f sides = max(abs(layout.bounds.lower), abs(layout.bounds.upper));
+  largest_coordinate = layout.is_empty() ? 0 : largest(sides);
+  shared_mask = 0xFFFFFFFFU;
+  for (const Geometry& geometry : geometries) shared_mask &= geometry.mask;
+}
+template struct WideTracer<WideBvh<4>>;
+template struct WideTracer<WideBvh<8>>;
+template struct WideTracer<QuantisedBvh>;
 
 HWY_EXPORT(table4);
 HWY_EXPORT(table8);

@@ -14,6 +14,11 @@ template <class Layout>
 struct WideTracer {
   Layout layout;
   std::span<const Geometry> geometries;
+  float largest_coordinate = 0;  ///< of the layout's bounds
+  uint32_t shared_mask = 0;      ///< what the masks of all geometries have in common
+
+  /// To be called when the layout is made or its bounds have changed.
+  void update();
 };
 
 /// What one instruction set offers.

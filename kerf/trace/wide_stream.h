@@ -28,7 +28,7 @@ class Stream {
     Task waiting[(kWidth - 1) * kMaxDepth + kWidth];  // all children but one of each node above
     Task* top = waiting;
     *top++ = {tracer_.layout.root, 0, count, count, 0};
-    const uint32_t* const near_upper = hits_[lists_[0]].wide.near_upper;
+    const uint32_t octant = hits_[lists_[0]].wide.octant;
     while (top != waiting) {
       const Task task = *--top;
       if (task.child.kind() == Child::kSlots || (!task.child.is_leaf() && !pays(task))) {
@@ -38,7 +38,7 @@ class Stream {
       } else {
         const Node& node = tracer_.layout.nodes[task.child.number()];
         HWY_ALIGN float sums[kWidth];
-        const uint32_t entered = enter(node, near_upper, task, sums);
+        const uint32_t entered = enter(node, octant, task, sums);
         top = divide(node, entered, sums, task, top);
       }
     }
@@ -63,16 +63,17 @@ class Stream {
   }
 
   /// Box tests of all rays; which children any of them enters, and the sums of their entries.
-  HWY_INLINE uint32_t enter(const Node& node, const uint32_t* near_upper, const Task& task, float* sums) {
+  HWY_INLINE uint32_t enter(const Node& node, uint32_t octant, const Task& task, float* sums) {
     const Box d;
     uint32_t all = 0;
     for (uint32_t part = 0; part < kWidth; part += hn::MaxLanes(d)) {
-      const auto x0 = Sides::template load<0>(d, node, near_upper[0], part);
-      const auto x1 = Sides::template load<0>(d, node, near_upper[0] ^ 1, part);
-      const auto y0 = Sides::template load<1>(d, node, near_upper[1], part);
-      const auto y1 = Sides::template load<1>(d, node, near_upper[1] ^ 1, part);
-      const auto z0 = Sides::template load<2>(d, node, near_upper[2], part);
-      const auto z1 = Sides::template load<2>(d, node, near_upper[2] ^ 1, part);
+      const uint32_t side_x = octant & 1, side_y = octant >> 1 & 1, side_z = octant >> 2 & 1;
+      const auto x0 = Sides::template load<0>(d, node, side_x, part);
+      const auto x1 = Sides::template load<0>(d, node, side_x ^ 1, part);
+      const auto y0 = Sides::template load<1>(d, node, side_y, part);
+      const auto y1 = Sides::template load<1>(d, node, side_y ^ 1, part);
+      const auto z0 = Sides::template load<2>(d, node, side_z, part);
+      const auto z1 = Sides::template load<2>(d, node, side_z ^ 1, part);
       auto sum = hn::Zero(d);
       for (uint32_t i = 0; i < task.count; ++i) {
         const StreamRay& ray = rays_[lists_[task.first + i]];
@@ -100,8 +101,7 @@ class Stream {
 
   /// Lists each child's rays and puts the children upon the stack, the earliest entered on top, for any hit the
   /// largest.
-  HWY_INLINE Task* divide(const Node& node, uint32_t entered, const float* sums, const Task& task,
-                          Task* top) {
+  HWY_INLINE Task* divide(const Node& node, uint32_t entered, const float* sums, const Task& task, Task* top) {
     Task* const base = top;
     uint32_t end = task.free;
     for (; entered != 0; entered &= entered - 1) {
@@ -174,15 +174,15 @@ class Stream {
     uint32_t candidates = 0;
     for (uint32_t i = 0; i < passed; ++i) {
       const uint32_t number = numbers[i];
-      const uint32_t found = typename Tree::Leaves(hits_[number].wide).may_hit(triangles);
+      const uint32_t found = typename Tree::Leaves{hits_[number].wide}.may_hit(triangles);
       numbers[candidates] = number;
       entered_[candidates] = static_cast<uint8_t>(found);
       candidates += found != 0 ? 1 : 0;
     }
     for (uint32_t i = 0; i < candidates; ++i) {
       StreamHit& hit = hits_[numbers[i]];
-      const bool is_over = Single::test_triangles(tracer_, *hit.ray, hit.wide, hit.best, triangles, entered_[i]);
-      rays_[numbers[i]].limit = is_over ? -kInfinity : hit.best.t;
+      const bool is_over = Single::test_triangles(tracer_, *hit.ray, hit.wide, hit.nearest, triangles, entered_[i]);
+      rays_[numbers[i]].limit = is_over ? -kInfinity : hit.nearest.hit.t;
     }
   }
 
@@ -191,10 +191,10 @@ class Stream {
     for (uint32_t i = 0; i < task.count; ++i) {
       const uint32_t number = lists_[task.first + i];
       StreamHit& hit = hits_[number];
-      if (kAny && hit.best) continue;
+      if (kAny && hit.nearest.hit) continue;
       NoCounts counts;
-      Single(tracer_, *hit.ray, hit.wide, hit.best, counts).run(task.child);
-      rays_[number].limit = kAny && hit.best ? -kInfinity : hit.best.t;
+      Single(tracer_, *hit.ray, hit.wide, hit.nearest, counts).run(task.child);
+      rays_[number].limit = kAny && hit.nearest.hit ? -kInfinity : hit.nearest.hit.t;
     }
   }
 
@@ -225,17 +225,14 @@ template <class Tree, class Result, class Single>
 void trace_some(const WideTracer<typename Tree::Layout>& tracer, std::span<const Ray> rays, std::span<Result> results,
                 StreamMemory& memory, const Single& single) {
   constexpr uint8_t kOctants = 8, kOut = kOctants;
-  const Box3f& bounds = tracer.layout.bounds;
-  const Float4 lower{bounds.lower.x, bounds.lower.y, bounds.lower.z, 0};
-  const Float4 upper{bounds.upper.x, bounds.upper.y, bounds.upper.z, 0};
   uint32_t counts[kOctants + 1] = {};
   for (size_t i = 0; i < rays.size(); ++i) {
-    const WideRay& ray = memory.make_ray(i, rays[i], lower, upper);
+    const WideRay& ray = memory.make_ray(i, rays[i], tracer.largest_coordinate);
     uint8_t octant = kOut;
     if (ray.valid && !ray.is_fused) {
       results[i] = result_of<Result>(single(rays[i]));
-    } else if (ray.valid && ray.enters(lower, upper)) {
-      octant = static_cast<uint8_t>(ray.near_upper[0] | ray.near_upper[1] << 1 | ray.near_upper[2] << 2);
+    } else if (ray.valid && ray.enters(tracer.layout.bounds)) {
+      octant = static_cast<uint8_t>(ray.octant);
     } else {
       results[i] = Result{};
     }
@@ -254,14 +251,19 @@ void trace_some(const WideTracer<typename Tree::Layout>& tracer, std::span<const
     Stream<Tree, !std::is_same_v<Result, Hit>>(tracer, memory).run(counts[octant]);
   }
   for (size_t i = 0; i < rays.size(); ++i) {
-    if (memory.octants()[i] != kOut) results[i] = result_of<Result>(memory.hits()[i].best);
+    if (memory.octants()[i] == kOut) continue;
+    StreamHit& hit = memory.hits()[i];
+    if constexpr (std::is_same_v<Result, Hit>) {
+      Walk<Tree, true, false, NoCounts>::resolve(tracer, rays[i], hit.wide, hit.nearest);
+    }
+    results[i] = result_of<Result>(hit.nearest.hit);
   }
 }
 
 /// False, and nothing is done, where single rays are as good.
 template <class Tree, class Result, class Single>
-bool trace_streams(const WideTracer<typename Tree::Layout>& tracer, std::span<const Ray> rays, std::span<Result> results,
-                   const Single& single) {
+bool trace_streams(const WideTracer<typename Tree::Layout>& tracer, std::span<const Ray> rays,
+                   std::span<Result> results, const Single& single) {
   constexpr size_t kFewest = 32;
   // Narrower vectors compress by tables, which takes longer than streams save.
   constexpr bool kCompresses = hn::MaxLanes(hn::CappedTag<uint32_t, 16>()) == 16;

@@ -21,6 +21,7 @@ class WideStructure : public Structure {
       tracer_.layout = make_wide_bvh<Layout::kChildren>(bvh, input.geometries, costs, numbers);
     }
     tracer_.geometries = input.geometries;
+    tracer_.update();
   }
 
   const TraceTable& table() const override { return *kernels_.table; }
@@ -53,7 +54,9 @@ class WideStructure : public Structure {
   }
 
   RefitOutcome refit(const Fragments& fragments) override {
-    return kerf::refit(tracer_.layout, numbers_, fragments, tracer_.geometries);
+    const RefitOutcome outcome = kerf::refit(tracer_.layout, numbers_, fragments, tracer_.geometries);
+    tracer_.update();
+    return outcome;
   }
   size_t refit_bytes() const override { return numbers_.bytes(); }
 
