@@ -30,40 +30,48 @@ struct QuantisedChild {
   bool is_leaf() const { return kind() != kInner; }
 };
 
-/// The boxes of up to eight children side by side, each side in a byte: so many steps of a power of two from the least
-/// of all (the idea: Ylitie, Karras, Laine: Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs,
-/// 2017, section 3.2). A side as float arithmetic makes it from that, one product without rounding and one sum, is
-/// never inside the box that it stands for, whatever the size of numbers.
-struct alignas(32) QuantisedNode {
+/// The boxes of up to eight children side by side, each side in ten bits (the idea: Ylitie, Karras, Laine: Efficient
+/// Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, 2017, section 3.2, who take eight): the steps from
+/// where all boxes begin are in the mantissa of a float f between 1 and 2, and the side is base + f size. So nothing is
+/// converted: a shift, a mask and the exponent of 1 make f. A side as float arithmetic makes it from that, in two
+/// operations or one, is never inside the box that it stands for, whatever the size of numbers. Two cache lines.
+struct alignas(64) QuantisedNode {
   static constexpr uint32_t kWidth = 8;
-  static constexpr uint32_t kMostSteps = 255;
+  static constexpr uint32_t kSideBits = 10, kMostSteps = (1U << kSideBits) - 1;
+  /// Of each axis: where its bits stand in a word, and where in f.
+  static constexpr uint32_t kPlaces[3] = {12, 2, 22}, kMantissaPlaces[3] = {12, 13, 13};
+  static constexpr uint32_t kOne = 0x3F800000;
 
-  float origin[3];
-  uint8_t exponents[3];  ///< of the steps, as floats have it; 0: no step, where all is flat
-  uint8_t places;        ///< those with a child, the first ones, as bits; others have sides inside out
-  uint8_t sides[3][2][kWidth];
+  float base[3];
+  float size[3];      ///< 0 where all is flat
+  uint32_t children;  ///< how many
+  uint32_t unused;
+  uint32_t sides[2][kWidth];  ///< the lower ones, then the upper ones
   QuantisedChild child[kWidth];
 
-  float step(uint32_t axis) const { return std::bit_cast<float>(uint32_t{exponents[axis]} << 23); }
-  float side_at(uint32_t axis, uint32_t steps) const {
-    return origin[axis] + static_cast<float>(steps) * step(axis);
+  static float in_mantissa(uint32_t axis, uint32_t steps) {
+    return std::bit_cast<float>(kOne | steps << kMantissaPlaces[axis]);
+  }
+  float side_at(uint32_t axis, uint32_t steps) const { return base[axis] + in_mantissa(axis, steps) * size[axis]; }
+  uint32_t steps(uint32_t axis, uint32_t upper, uint32_t i) const {
+    return sides[upper][i] >> kPlaces[axis] & kMostSteps;
   }
   Box3f bounds(uint32_t i) const {
     Box3f box;
     for (uint32_t axis = 0; axis < 3; ++axis) {
-      box.lower[axis] = side_at(axis, sides[axis][0][i]);
-      box.upper[axis] = side_at(axis, sides[axis][1][i]);
+      box.lower[axis] = side_at(axis, steps(axis, 0, i));
+      box.upper[axis] = side_at(axis, steps(axis, 1, i));
     }
     return box;
   }
-  bool has_child(uint32_t i) const { return (places >> i & 1) != 0; }
+  bool has_child(uint32_t i) const { return i < children; }
 
   /// Of the first children, as tight as steps allow; the others are none.
   void set_bounds(std::span<const Box3f> boxes);
 };
-static_assert(sizeof(QuantisedNode) == 96);
+static_assert(sizeof(QuantisedNode) == 128);
 
-/// A WideBvh<8> in about half the memory: boxes in bytes, corners that triangles share.
+/// A WideBvh<8> in about half the memory: boxes in ten bits a side, corners that triangles share.
 struct QuantisedBvh {
   using Child = QuantisedChild;
   static constexpr uint32_t kChildren = QuantisedNode::kWidth;

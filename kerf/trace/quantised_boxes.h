@@ -1,28 +1,28 @@
 // No include guard on purpose: a part of trace_wide.cpp, which includes it once for each instruction set, in
 // HWY_NAMESPACE, after BoxTests and LeafTests.
 
-/// The sides of all boxes of a QuantisedNode on one side of one axis, from child `first` on, in steps.
-template <class D>
-HWY_INLINE hn::Vec<D> steps_of(D d, const uint8_t* sides) {
-  return hn::ConvertTo(d, hn::PromoteTo(hn::RebindToSigned<D>(), hn::LoadU(hn::Rebind<uint8_t, D>(), sides)));
-}
-
-/// The steps along x, y or z: a part of the word of exponents, where a float has its exponent.
-template <int kAxis, class D>
-HWY_INLINE hn::Vec<D> step_of(D d, const QuantisedNode& node) {
+/// Where boxes end along x, y or z, from their words: how many times a node's size from its base.
+template <uint32_t kAxis, class D>
+HWY_INLINE hn::Vec<D> ends_of(D d, const uint32_t* words) {
   const hn::RebindToUnsigned<D> du;
-  uint32_t exponents = 0;
-  std::memcpy(&exponents, node.exponents, sizeof exponents);
-  return hn::BitCast(d, hn::And(hn::ShiftLeft<23 - 8 * kAxis>(hn::Set(du, exponents)), hn::Set(du, 0x7F800000U)));
+  constexpr int kShift =
+      static_cast<int>(QuantisedNode::kMantissaPlaces[kAxis]) - static_cast<int>(QuantisedNode::kPlaces[kAxis]);
+  constexpr uint32_t kMask = QuantisedNode::kMostSteps << QuantisedNode::kMantissaPlaces[kAxis];
+  auto bits = hn::Load(du, words);
+  if constexpr (kShift > 0) bits = hn::ShiftLeft<kShift>(bits);
+  if constexpr (kShift < 0) bits = hn::ShiftRight<-kShift>(bits);
+  return hn::BitCast(d, hn::OrAnd(hn::Set(du, QuantisedNode::kOne), bits, hn::Set(du, kMask)));
 }
 
 /// What the tests of boxes in steps need of a ray, in registers.
 ///
-/// A side is origin + q step, and its parameter that times inverse plus the offset of WideRay; with the node's
-/// constants S = step inverse and A = origin inverse + offset it is q S + A. In position: S has no rounding, for steps
-/// are powers of two (where it underflows, by 2^-150 of a parameter, the shift is above 2^-80 and inverse above 2^-50);
-/// A is off by e M. That is all that comes to what WideRay adds up, and its shift of 16 e (M + o) covers it. Without
-/// fused operations the side is as float arithmetic rounds it, never inside the box: see QuantisedNode.
+/// A side is base + f size, f from 1 to 2, and its parameter that times inverse plus the offset of WideRay; with the
+/// node's constants S = size inverse and A = base inverse + offset it is f S + A. In position, C and o as there: a size
+/// is at most 4 C along x, where f is at most 1.5, and 2 C along y and z; so S is off by 6 e C, A, which lies as far
+/// before the boxes as their size is, by e (5 C + o), the sum by e (C + o); inverse, the offset and a hit's t by
+/// e (2 C + 4 o) as there. That is e (14 C + 6 o), and its shift of 16 e (C + 2 o) covers it; where S underflows, by
+/// 2^-150 of a parameter, the shift is above 2^-80 and inverse above 2^-50. Without fused operations the side is as
+/// float arithmetic rounds it, never inside the box: see QuantisedNode.
 template <bool kFused>
 struct QuantisedBoxTests {
   static constexpr uint32_t kWidth = QuantisedNode::kWidth;
@@ -45,17 +45,17 @@ struct QuantisedBoxTests {
         far_y(all(kFused ? ray.far_offset[1] : ray.origin_far(1))),
         far_z(all(kFused ? ray.far_offset[2] : ray.origin_far(2))),
         t_min(all(ray.t_min)),
-        row_x(ray.row(0, kWidth)),
-        row_y(ray.row(1, kWidth)),
-        row_z(ray.row(2, kWidth)) {}
+        row_x((ray.octant & 1) * kWidth),
+        row_y((ray.octant >> 1 & 1) * kWidth),
+        row_z((ray.octant >> 2 & 1) * kWidth) {}
 
   /// Which children the ray enters within [t_min, limit], and where.
   HWY_INLINE uint32_t enter(const QuantisedNode& node, float limit, float* entry) const {
     const Lanes d;
-    const uint8_t* const sides = &node.sides[0][0][0];
-    const Axis x(step_of<0>(d, node), all(node.origin[0]), inverse_x, near_x, far_x);
-    const Axis y(step_of<1>(d, node), all(node.origin[1]), inverse_y, near_y, far_y);
-    const Axis z(step_of<2>(d, node), all(node.origin[2]), inverse_z, near_z, far_z);
+    const uint32_t* const sides = &node.sides[0][0];
+    const Axis<0> x(node, inverse_x, near_x, far_x);
+    const Axis<1> y(node, inverse_y, near_y, far_y);
+    const Axis<2> z(node, inverse_z, near_z, far_z);
     uint32_t entered = 0;
     for (uint32_t i = 0; i < kWidth; i += hn::MaxLanes(d)) {
       const auto x0 = x.near(sides + row_x + i), x1 = x.far(sides + (row_x ^ kWidth) + i);
@@ -66,32 +66,33 @@ struct QuantisedBoxTests {
       hn::Store(near, d, entry + i);
       entered |= bits_of(d, hn::Le(near, far)) << i;
     }
-    return entered & node.places;
+    return entered & ((1U << node.children) - 1);
   }
 
  private:
   static HWY_INLINE V all(float value) { return hn::Set(Lanes(), value); }
 
   /// One axis of a node.
+  template <uint32_t kAxis>
   struct Axis {
-    V step, origin, inverse;  // fused: of the parameter's
+    V size, base, inverse;  // size fused: of the parameter's
     V near_shift, far_shift;
 
-    HWY_INLINE Axis(V of_node, V node_origin, V ray_inverse, V ray_near, V ray_far)
-        : step(kFused ? hn::Mul(of_node, ray_inverse) : of_node),
-          origin(node_origin),
-          inverse(ray_inverse),
-          near_shift(kFused ? hn::MulAdd(node_origin, ray_inverse, ray_near) : ray_near),
-          far_shift(kFused ? hn::MulAdd(node_origin, ray_inverse, ray_far) : ray_far) {}
+    HWY_INLINE Axis(const QuantisedNode& node, V ray_inverse, V ray_near, V ray_far)
+        : size(all(node.size[kAxis])), base(all(node.base[kAxis])), inverse(ray_inverse) {
+      if constexpr (kFused) size = hn::Mul(size, inverse);
+      near_shift = kFused ? hn::MulAdd(base, inverse, ray_near) : ray_near;
+      far_shift = kFused ? hn::MulAdd(base, inverse, ray_far) : ray_far;
+    }
 
-    HWY_INLINE V near(const uint8_t* sides) const { return at(sides, near_shift); }
-    HWY_INLINE V far(const uint8_t* sides) const { return at(sides, far_shift); }
+    HWY_INLINE V near(const uint32_t* sides) const { return at(sides, near_shift); }
+    HWY_INLINE V far(const uint32_t* sides) const { return at(sides, far_shift); }
 
    private:
-    HWY_INLINE V at(const uint8_t* sides, V shift) const {
-      const auto steps = steps_of(Lanes(), sides);
-      if constexpr (kFused) return hn::MulAdd(steps, step, shift);
-      return hn::Mul(hn::Sub(hn::Add(origin, hn::Mul(steps, step)), shift), inverse);
+    HWY_INLINE V at(const uint32_t* sides, V shift) const {
+      const auto ends = ends_of<kAxis>(Lanes(), sides);
+      if constexpr (kFused) return hn::MulAdd(ends, size, shift);
+      return hn::Mul(hn::Sub(hn::MulAdd(ends, size, base), shift), inverse);
     }
   };
 };
@@ -199,10 +200,10 @@ struct QuantisedLeafTests {
 
 /// A QuantisedNode's sides as streams take them.
 struct QuantisedSides {
-  template <class D>
-  static HWY_INLINE hn::Vec<D> load(D d, const QuantisedNode& node, uint32_t axis, uint32_t upper, uint32_t first) {
-    const auto steps = steps_of(d, node.sides[axis][upper] + first);
-    return hn::Add(hn::Set(d, node.origin[axis]), hn::Mul(steps, hn::Set(d, node.step(axis))));
+  template <uint32_t kAxis, class D>
+  static HWY_INLINE hn::Vec<D> load(D d, const QuantisedNode& node, uint32_t upper, uint32_t first) {
+    const auto ends = ends_of<kAxis>(d, node.sides[upper] + first);
+    return hn::MulAdd(ends, hn::Set(d, node.size[kAxis]), hn::Set(d, node.base[kAxis]));
   }
-  static HWY_INLINE uint32_t places(const QuantisedNode& node) { return node.places; }
+  static HWY_INLINE uint32_t places(const QuantisedNode& node) { return (1U << node.children) - 1; }
 };

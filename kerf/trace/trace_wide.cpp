@@ -38,9 +38,9 @@ HWY_INLINE uint32_t bits_of(D d, M mask) {
 /// A WideNode's sides as streams take them.
 template <uint32_t kWidth>
 struct WideSides {
-  template <class D>
-  static HWY_INLINE hn::Vec<D> load(D d, const WideNode<kWidth>& node, uint32_t axis, uint32_t upper, uint32_t first) {
-    return hn::Load(d, node.sides[axis][upper] + first);
+  template <uint32_t kAxis, class D>
+  static HWY_INLINE hn::Vec<D> load(D d, const WideNode<kWidth>& node, uint32_t upper, uint32_t first) {
+    return hn::Load(d, node.sides[kAxis][upper] + first);
   }
   /// Others than these are entered by no ray anyway.
   static HWY_INLINE uint32_t places(const WideNode<kWidth>&) { return (1U << kWidth) - 1; }

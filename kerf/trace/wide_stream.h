@@ -12,6 +12,7 @@ class Stream {
   using Tracer = WideTracer<typename Tree::Layout>;
   using Node = typename Tree::Node;
   using Child = typename Tree::Child;
+  using Sides = typename Tree::Sides;
 
  public:
   Stream(const Tracer& tracer, StreamMemory& memory)
@@ -66,10 +67,13 @@ class Stream {
     const Box d;
     uint32_t all = 0;
     for (uint32_t part = 0; part < kWidth; part += hn::MaxLanes(d)) {
-      const auto side = [&](uint32_t axis, uint32_t far) {
-        return Tree::Sides::load(d, node, axis, (octant >> axis & 1) ^ far, part);
-      };
-      const auto x0 = side(0, 0), x1 = side(0, 1), y0 = side(1, 0), y1 = side(1, 1), z0 = side(2, 0), z1 = side(2, 1);
+      const uint32_t side_x = octant & 1, side_y = octant >> 1 & 1, side_z = octant >> 2 & 1;
+      const auto x0 = Sides::template load<0>(d, node, side_x, part);
+      const auto x1 = Sides::template load<0>(d, node, side_x ^ 1, part);
+      const auto y0 = Sides::template load<1>(d, node, side_y, part);
+      const auto y1 = Sides::template load<1>(d, node, side_y ^ 1, part);
+      const auto z0 = Sides::template load<2>(d, node, side_z, part);
+      const auto z1 = Sides::template load<2>(d, node, side_z ^ 1, part);
       auto sum = hn::Zero(d);
       for (uint32_t i = 0; i < task.count; ++i) {
         const StreamRay& ray = rays_[lists_[task.first + i]];
@@ -92,7 +96,7 @@ class Stream {
       }
       hn::Store(sum, d, sums + part);
     }
-    return all & Tree::Sides::places(node);
+    return all & Sides::places(node);
   }
 
   /// Lists each child's rays and puts the children upon the stack, the earliest entered on top, for any hit the
