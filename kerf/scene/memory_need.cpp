@@ -63,13 +63,16 @@ Takes takes_of(const Pipeline& pipeline) {
 MemoryNeed memory_need(const Pipeline& pipeline, size_t primitives, size_t bytes) {
   const Takes takes = takes_of(pipeline);
   const size_t given = primitives * takes.per_primitive;
-  const auto need = [&](size_t references) {
-    return std::max(given + references * takes.per_split_reference, references * takes.per_reference);
+  const auto need = [&](size_t references, size_t per_reference) {
+    return std::max(given + references * takes.per_split_reference, references * per_reference);
   };
   MemoryNeed result;
-  result.least = need(primitives);
+  result.least = need(primitives, takes.per_reference);
   const double most = std::min(takes.growth * static_cast<double>(primitives), static_cast<double>(kMaxReferences));
-  result.most = takes.is_bounded ? need(static_cast<size_t>(std::ceil(most))) : MemoryNeed::kUnbounded;
+  // Where a limit leaves no room for the layout that a preset prefers, it takes the plain one.
+  const size_t of_layout = pipeline.ends_with_preset ? preset_layout(0).bytes_per_reference : 0;
+  result.most = takes.is_bounded ? need(static_cast<size_t>(std::ceil(most)), std::max(takes.per_reference, of_layout))
+                                 : MemoryNeed::kUnbounded;
   if (bytes == MemoryNeed::kUnbounded) return result;
   result.most_references = bytes / takes.per_reference;
   if (takes.per_split_reference > 0) {

@@ -57,6 +57,7 @@ class Parser {
   void add_stage(Pipeline& pipeline) {
     const Stage stage = parse_stage();
     const auto* preset = std::get_if<const PresetEntry*>(&stage.entry->entry);
+    pipeline.ends_with_preset = preset != nullptr;
     if (preset == nullptr) {
       pipeline.stages.push_back(stage);
       return;

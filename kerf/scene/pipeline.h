@@ -18,6 +18,8 @@ struct Stage {
 /// optimisers and perhaps a layout, or a structure.
 struct Pipeline {
   std::vector<Stage> stages;
+  /// It ends with a preset, which leaves the layout to be chosen for the scene: see preset_layout().
+  bool ends_with_preset = false;
 
   /// In one canonical spelling that parse_pipeline() reads back.
   std::string text() const;

@@ -1,5 +1,8 @@
 #include "kerf/scene/presets.h"
 
+#include <algorithm>
+#include <cassert>
+
 namespace kerf {
 namespace {
 
@@ -15,5 +18,13 @@ constexpr PresetEntry kPresets[] = {
 }  // namespace
 
 std::span<const PresetEntry> presets() { return kPresets; }
+
+const LayoutEntry& preset_layout(size_t references) {
+  const std::string_view name = references > kManyReferences ? "quantised_bvh8" : "bvh8";
+  const std::span<const LayoutEntry> all = layouts();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const LayoutEntry& entry) { return entry.name == name; });
+  assert(found != all.end());
+  return *found;
+}
 
 }  // namespace kerf

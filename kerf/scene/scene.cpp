@@ -132,7 +132,8 @@ struct Scene::Built {
   Built(std::vector<Geometry> added, const Pipeline& pipeline, const BuildOptions& options, const WorkLimit& limit);
   StructureInput make_input(const Pipeline& pipeline, const BuildOptions& options, const WorkLimit& limit,
                             Stages& stages);
-  void make_structure(StructureInput input, std::span<const Stage> makers, Stages& stages);
+  const LayoutEntry& layout_for(const Pipeline& pipeline, size_t references, size_t bytes) const;
+  void make_structure(StructureInput input, const Pipeline& pipeline, Stages& stages);
   void describe();
 };
 
@@ -142,8 +143,7 @@ Scene::Built::Built(std::vector<Geometry> added, const Pipeline& pipeline, const
   Stages stages(pipeline, *limit.meter);
   report.structure = pipeline.text();
   StructureInput input = make_input(pipeline, options, limit, stages);
-  const size_t first = pipeline.stages.front().entry->kind == "splitter" ? 1 : 0;
-  make_structure(std::move(input), std::span(pipeline.stages).subspan(first), stages);
+  make_structure(std::move(input), pipeline, stages);
   stages.begin("measure", kMeasureWeight);
   describe();
   report.peak_bytes = std::max(limit.meter->peak(), report.bytes);
@@ -183,9 +183,17 @@ StructureInput Scene::Built::make_input(const Pipeline& pipeline, const BuildOpt
   return input;
 }
 
-/// `makers`: a structure, or a builder, then any number of optimisers, then a layout or none. What a maker is given it
-/// accounts for itself.
-void Scene::Built::make_structure(StructureInput input, std::span<const Stage> makers, Stages& stages) {
+/// Of a pipeline that names none.
+const LayoutEntry& Scene::Built::layout_for(const Pipeline& pipeline, size_t references, size_t bytes) const {
+  const bool has_room = kerf::memory_need(pipeline, report.primitives).most <= bytes;
+  return pipeline.ends_with_preset && has_room ? preset_layout(references) : layouts().front();
+}
+
+/// What follows the splitter: a structure, or a builder, then any number of optimisers, then a layout or none. What a
+/// maker is given it accounts for itself.
+void Scene::Built::make_structure(StructureInput input, const Pipeline& pipeline, Stages& stages) {
+  std::span<const Stage> makers = pipeline.stages;
+  if (makers.front().entry->kind == "splitter") makers = makers.subspan(1);
   stages.begin(makers[0]);
   if (const auto* entry = std::get_if<const StructureEntry*>(&makers[0].entry->entry)) {
     structure = (*entry)->build(std::move(input), makers[0].options);
@@ -193,7 +201,9 @@ void Scene::Built::make_structure(StructureInput input, std::span<const Stage> m
     return;
   }
   const auto* last = std::get_if<const LayoutEntry*>(&makers.back().entry->entry);
-  const LayoutEntry& layout = last != nullptr ? **last : layouts().front();
+  const LayoutEntry& layout =
+      last != nullptr ? **last : layout_for(pipeline, input.references.size(), input.limit.bytes);
+  if (pipeline.ends_with_preset) report.structure += "+" + std::string(layout.name);
   const OptionValues layout_options = last != nullptr ? makers.back().options : OptionValues(layout.options);
   if (last != nullptr) makers = makers.first(makers.size() - 1);
   const auto& builder = *std::get<const BuilderEntry*>(makers[0].entry->entry);

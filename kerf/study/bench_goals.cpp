@@ -262,7 +262,7 @@ class Judge {
                         single_ + ", of HIGH's");
   }
 
-  /// A row of the judged preset whose layout is called as the judged one's with something behind is its small form.
+  /// Of rows of the judged preset.
   Finding bytes_quantised() const {
     Scenes asked;
     for (const BenchScene& scene : alone_) {
@@ -273,7 +273,8 @@ class Judge {
     bool at_60 = false, at_50 = false;
     std::string text;
     for (const std::string& name : kerf_rows(asked, "")) {
-      if (single_.empty() || name == single_ || !name.starts_with(single_)) continue;
+      const auto preset_of = [](const std::string& row) { return row.substr(0, row.rfind(' ')); };
+      if (preset_of(name) != preset_of(single_) || name.find(" quantised_") == std::string::npos) continue;
       const Column share = column_of(asked, [&](const BenchScene& scene) { return bytes_share(scene, name); });
       const double speed = overall_ratio(asked, name, Feed::loop) / full;
       if (share.missing() > 0 || std::isnan(speed)) continue;

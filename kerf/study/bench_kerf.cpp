@@ -8,10 +8,13 @@
 namespace kerf {
 namespace {
 
-/// The last stage if it is a layout or a structure, else the layout that a tree gets by itself.
+/// The last stage if it is a layout or a structure, else the layout that a tree gets by itself: of a preset, unless it
+/// turns out to have very many references.
 std::string_view layout_of(const Pipeline& pipeline) {
   const MenuEntry& last = *pipeline.stages.back().entry;
-  return last.kind == "layout" || last.kind == "structure" ? last.name : layouts().front().name;
+  return last.kind == "layout" || last.kind == "structure" ? last.name
+         : pipeline.ends_with_preset                       ? preset_layout(0).name
+                                                           : layouts().front().name;
 }
 
 /// The preset that the text begins with, else the pipeline without its layout.

@@ -19,9 +19,9 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr SplittingRowEntry kRows[] = {
     {Role::plain, "plain", "binned_sah", true, false},
     {Role::automatic, "auto", "early_split(auto)+binned_sah", true, true},
-    {Role::fast, "fast", "fast", false, false},
-    {Role::balanced, "balanced", "balanced", true, true},
-    {Role::best, "best", "best", true, true},
+    {Role::fast, "fast", "fast+bvh2", false, false},
+    {Role::balanced, "balanced", "balanced+bvh2", true, true},
+    {Role::best, "best", "best+bvh2", true, true},
     {Role::spatial_split, "SBVH", "spatial_split", true, false},
     {Role::embree_high, "embree_high", "embree_high", false, false},
     {Role::reinsertion, "reinsertion", "binned_sah+reinsertion", false, false},
