@@ -29,6 +29,7 @@ struct Box4 {
     lower = min(other.lower, lower);
     upper = max(other.upper, upper);
   }
+  Box4 united(const Box4& other) const { return {min(other.lower, lower), max(other.upper, upper)}; }
   Box4 intersected(const Box4& other) const { return {max(other.lower, lower), min(other.upper, upper)}; }
   Box3f box() const { return {{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}}; }
   bool is_empty() const { return lower[0] > upper[0]; }
