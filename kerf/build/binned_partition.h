@@ -6,6 +6,7 @@
 
 #include "kerf/build/reference_order.h"
 #include "kerf/references/box4.h"
+#include "kerf/references/reference.h"
 
 namespace kerf {
 namespace detail {
