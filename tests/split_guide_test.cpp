@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "kerf/build/spatial_bins.h"
-#include "kerf/references/clipper.h"
 #include "kerf/choose/split_guide.h"
+#include "kerf/references/clipper.h"
 #include "kerf/references/middle_cut.h"
 #include "tests/support/soup.h"
 

@@ -6,6 +6,7 @@
 
 #include "kerf/build/reference_order.h"
 #include "kerf/references/box4.h"
+#include "kerf/references/reference.h"
 
 namespace kerf {
 namespace detail {
@@ -42,12 +43,12 @@ struct Bin {
 
 /// Which slice a reference's centre lies in, along each axis.
 struct Slices {
-  Float4 first, scale;
+  Float4 first{}, scale{};
   Float4 last;  ///< the number of the last slice
   uint32_t bins;
   bool usable[3];
 
-  Slices(const Box3f& centers, uint32_t bin_count) : first{}, scale{}, bins(bin_count) {
+  Slices(const Box3f& centers, uint32_t bin_count) : bins(bin_count) {
     const auto count = static_cast<float>(bins);
     last = Float4{count, count, count, count} - 1;
     for (uint32_t axis = 0; axis < 3; ++axis) {

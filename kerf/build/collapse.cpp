@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "kerf/base/parallel.h"
+#include "kerf/references/box4.h"
 
 namespace kerf {
 namespace {
@@ -26,7 +27,7 @@ Collapse::Collapse(const MovableTree& tree, const LeafRule& rule)
 /// The least cost of the subtree.
 double Collapse::choose(uint32_t n, uint32_t depth) {
   const MovableTree::Node& node = tree_[n];
-  const double area = half_area(node.bounds());
+  const double area = Box4::of(node).half_area();
   if (node.is_leaf()) {
     summaries_[n].slots = tree_.slot_count(node);
     return rule_.as_leaf(summaries_[n].slots) * area;

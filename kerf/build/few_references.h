@@ -6,6 +6,7 @@
 #include <span>
 
 #include "kerf/references/box4.h"
+#include "kerf/references/reference.h"
 
 namespace kerf {
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "kerf/base/parallel.h"
+#include "kerf/references/box4.h"
 
 namespace kerf {
 namespace {
@@ -29,8 +30,8 @@ class BvhOfJoins {
  private:
   /// What the surface area heuristic needs to know of a part; only of one that fits in a leaf.
   struct Part {
-    Box3f bounds;
-    double cost = 0;
+    Box4 bounds;
+    double cost;
   };
   /// Where a part goes: its node, the first of the nodes below it and its first slot.
   struct Place {
@@ -54,8 +55,8 @@ class BvhOfJoins {
   /// Decides which joins below are leaves, and keeps the depth bound.
   Part settle(uint32_t part, uint32_t depth) {
     if (!tree_.is_join(part)) {
-      const Box3f box = tree_.references[part].bounds();
-      return {box, options_.as_leaf(1) * half_area(box)};
+      const Box4 box = Box4::of(tree_.references[part]);
+      return {box, options_.as_leaf(1) * box.half_area()};
     }
     Join& join = tree_.join(part);
     if (depth == options_.max_depth) return leaf(part);
@@ -65,9 +66,9 @@ class BvhOfJoins {
     both(
         join.references, [&] { left = settle(join.left, depth + 1); }, [&] { right = settle(join.right, depth + 1); });
     join.nodes = 2 + node_count(join.left) + node_count(join.right);
-    if (join.references > options_.leaf_size) return {};
-    const Box3f bounds = united(left.bounds, right.bounds);
-    const double area = half_area(bounds);
+    if (join.references > options_.leaf_size) return {Box4::empty(), 0};
+    const Box4 bounds = left.bounds.united(right.bounds);
+    const double area = bounds.half_area();
     const double as_leaf = options_.as_leaf(join.references) * area;
     const double as_inner = options_.inner_cost * area + left.cost + right.cost;
     if (as_leaf <= as_inner) join.nodes = 0;
@@ -76,11 +77,11 @@ class BvhOfJoins {
 
   Part leaf(uint32_t part) {
     tree_.join(part).nodes = 0;
-    Part result;
+    Part result{Box4::empty(), 0};
     for (const uint32_t reference : parts_below(part).references) {
-      result.bounds.extend(tree_.references[reference].bounds());
+      result.bounds.extend(Box4::of(tree_.references[reference]));
     }
-    result.cost = options_.as_leaf(tree_.join(part).references) * half_area(result.bounds);
+    result.cost = options_.as_leaf(tree_.join(part).references) * result.bounds.half_area();
     return result;
   }
 
@@ -122,18 +123,18 @@ class BvhOfJoins {
   }
 
   /// Nodes in depth-first order of pairs, the child with more references first; slots in the order of the leaves.
-  Box3f write(Bvh& bvh, uint32_t part, const Place& place) const {
+  Box4 write(Bvh& bvh, uint32_t part, const Place& place) const {
     BvhNode& node = bvh.nodes[place.node];
     if (node_count(part) == 0) {
       uint32_t end = place.slot;
-      const Box3f box = write_slots(bvh, part, end);
-      node = {box.lower, place.slot, box.upper, end - place.slot};
+      const Box4 box = write_slots(bvh, part, end);
+      node = {box.box().lower, place.slot, box.box().upper, end - place.slot};
       return box;
     }
     const Join& join = tree_.join(part);
     const bool swapped = tree_.reference_count(join.right) > tree_.reference_count(join.left);
     const uint32_t first = swapped ? join.right : join.left, second = swapped ? join.left : join.right;
-    Box3f a, b;
+    Box4 a, b;
     both(
         join.references,
         [&] {
@@ -143,20 +144,20 @@ class BvhOfJoins {
           b = write(bvh, second,
                     {place.below + 1, place.below + 2 + node_count(first), place.slot + tree_.reference_count(first)});
         });
-    const Box3f box = united(a, b);
-    node = {box.lower, static_cast<uint32_t>(place.below), box.upper, 0};
+    const Box4 box = a.united(b);
+    node = {box.box().lower, static_cast<uint32_t>(place.below), box.box().upper, 0};
     return box;
   }
 
   /// The slots of a leaf from `slot` on, and the box around them.
-  Box3f write_slots(Bvh& bvh, uint32_t part, uint32_t& slot) const {
+  Box4 write_slots(Bvh& bvh, uint32_t part, uint32_t& slot) const {
     if (!tree_.is_join(part)) {
       const Reference& reference = tree_.references[part];
       bvh.slots[slot++] = {reference.geometry, reference.primitive};
-      return reference.bounds();
+      return Box4::of(reference);
     }
-    const Box3f left = write_slots(bvh, tree_.join(part).left, slot);
-    return united(left, write_slots(bvh, tree_.join(part).right, slot));
+    const Box4 left = write_slots(bvh, tree_.join(part).left, slot);
+    return left.united(write_slots(bvh, tree_.join(part).right, slot));
   }
 
   JoinTree& tree_;

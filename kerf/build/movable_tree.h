@@ -14,7 +14,7 @@ class MovableTree {
   static constexpr uint32_t kRoot = 1;
 
   /// The sibling of node n is n ^ 1: the two children of a node share a cache line. 32 bytes.
-  struct Node {
+  struct alignas(16) Node {
     Vec3f lower;
     uint32_t below = 0;  ///< inner node: the lower number of its children, an even one; leaf: 2 x its first slot + 1
     Vec3f upper;

@@ -9,6 +9,7 @@
 #include "kerf/build/collapse.h"
 #include "kerf/build/movable_tree.h"
 #include "kerf/build/optimisers.h"
+#include "kerf/references/box4.h"
 
 namespace kerf {
 namespace {
@@ -32,14 +33,14 @@ class Search {
   /// Of any node but the root; the target is 0 where it is best off.
   Move find(uint32_t n) {
     const MovableTree::Node& node = tree_[n];
-    const double parent_area = half_area(tree_[node.parent].bounds());
+    const double parent_area = box_of(node.parent).half_area();
     best_ = {kLeastShare * parent_area, n, 0};
-    box_ = node.bounds();
-    area_ = half_area(box_);
+    box_ = Box4::of(node);
+    area_ = box_.half_area();
     left_ = kLongest;
     // The sibling takes its parent's place, and what is put below it makes it as large as that was.
-    Box3f rest = tree_[n ^ 1].bounds();
-    if (!tree_[n ^ 1].is_leaf()) wait(n ^ 1, half_area(rest));
+    const Box4 rest = box_of(n ^ 1);
+    if (!tree_[n ^ 1].is_leaf()) wait(n ^ 1, rest.half_area());
     look_below_waiting();
     climb(node.parent, parent_area, rest);
     return best_;
@@ -54,8 +55,10 @@ class Search {
     uint32_t node = 0;
   };
 
+  Box4 box_of(uint32_t n) const { return Box4::of(tree_[n]); }
+
   /// Up to the root. `saved` is for places beside the way, `rest` what is left of the way's box.
-  void climb(uint32_t way, double saved, Box3f rest) {
+  void climb(uint32_t way, double saved, Box4 rest) {
     bool shrinks = true;
     while (way != MovableTree::kRoot) {
       look_at(way ^ 1, saved);
@@ -63,19 +66,20 @@ class Search {
       const uint32_t side = way ^ 1;
       way = tree_[way].parent;
       if (!shrinks) continue;
-      rest.extend(tree_[side].bounds());
-      const double rest_area = half_area(rest);
+      rest.extend(box_of(side));
+      const double rest_area = rest.half_area();
       offer(way, saved - rest_area);  // in a new node of the box that this one had
-      saved += half_area(tree_[way].bounds()) - rest_area;
+      saved += box_of(way).half_area() - rest_area;
       shrinks = !rest.contains(box_);
     }
   }
 
   void look_at(uint32_t n, double saved) {
     const MovableTree::Node& node = tree_[n];
-    const double area = half_area(united(node.bounds(), box_));
+    const Box4 box = Box4::of(node);
+    const double area = box.united(box_).half_area();
     offer(n, saved - area);
-    if (!node.is_leaf()) wait(n, saved - (area - half_area(node.bounds())));
+    if (!node.is_leaf()) wait(n, saved - (area - box.half_area()));
   }
 
   /// Nothing below can save more than what it would with a place of the subtree's own size.
@@ -102,7 +106,7 @@ class Search {
 
   const MovableTree& tree_;
   Move best_;
-  Box3f box_;
+  Box4 box_ = Box4::empty();
   double area_ = 0;
   uint32_t left_ = 0;
   uint32_t waiting_count_ = 0;
@@ -130,7 +134,7 @@ class AreaClasses {
       std::transform(counts_.begin(), counts_.end(), block.begin(), counts_.begin(), std::plus<>());
   }
 
-  double area(uint32_t n) const { return half_area(tree_[n].bounds()); }
+  double area(uint32_t n) const { return Box4::of(tree_[n]).half_area(); }
 
   /// The so many with the largest boxes, in order.
   std::vector<uint32_t> largest(size_t wanted) const {

@@ -8,6 +8,7 @@
 #include "kerf/base/parallel.h"
 #include "kerf/build/top_down.h"
 #include "kerf/references/box4.h"
+#include "kerf/references/reference.h"
 
 namespace kerf::detail {
 

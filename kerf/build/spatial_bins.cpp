@@ -7,6 +7,7 @@
 
 #include "kerf/base/parallel.h"
 #include "kerf/references/box4.h"
+#include "kerf/references/reference.h"
 
 namespace kerf {
 namespace {

@@ -11,7 +11,7 @@
 namespace kerf {
 namespace {
 
-constexpr uint32_t kTaskDepth = 10;
+constexpr uint32_t kTaskDepth = 11, kWideTaskDepth = 6;  // subtrees further down are not worth tasks of their own
 
 }  // namespace
 
@@ -194,7 +194,7 @@ void WideCollapse::measure(uint32_t node, uint32_t depth) {
   const auto some = [&](uint32_t begin, uint32_t end) {
     for (uint32_t i = begin; i < end; ++i) measure(all[i], depth + 1);
   };
-  if (depth < kTaskDepth / 2) {
+  if (depth < kWideTaskDepth) {
     parallel_invoke([&] { some(0, count / 2); }, [&] { some(count / 2, count); });
   } else {
     some(0, count);

@@ -20,7 +20,7 @@ class WideWriter {
       : bvh_(bvh), geometries_(geometries), collapse_(collapse), layout_(layout) {}
 
   /// The wide subtree of a binary node, its nodes and its leaves' units from these numbers on.
-  Child write(uint32_t node, size_t first_node, size_t first_unit, uint32_t depth) {
+  Child write(uint32_t node, size_t first_node, size_t first_unit) {
     if (collapse_.is_leaf(node)) {
       WideCollapse::FewSlots few;
       return layout_.write_leaf(collapse_.leaf_slots(node, few), collapse_.is_triangles(node), geometries_, first_unit);
@@ -40,9 +40,9 @@ class WideWriter {
     }
     to.set_bounds(std::span(boxes).first(count));
     const auto some = [&](uint32_t begin, uint32_t end) {
-      for (uint32_t i = begin; i < end; ++i) to.child[i] = write(children[i], nodes[i], units[i], depth + 1);
+      for (uint32_t i = begin; i < end; ++i) to.child[i] = write(children[i], nodes[i], units[i]);
     };
-    if (depth < kTaskDepth) {
+    if (next_node - first_node >= kTaskNodes) {
       parallel_invoke([&] { some(0, count / 2); }, [&] { some(count / 2, count); });
     } else {
       some(0, count);
@@ -51,7 +51,7 @@ class WideWriter {
   }
 
  private:
-  static constexpr uint32_t kTaskDepth = 5;
+  static constexpr size_t kTaskNodes = 64;  // fewer are not worth a task
 
   const Bvh& bvh_;
   std::span<const Geometry> geometries_;
@@ -74,7 +74,7 @@ void write_wide(Layout& layout, const Bvh& bvh, std::span<const Geometry> geomet
   layout.nodes = decltype(layout.nodes)(size.nodes);
   layout.leaves = LineArray<LeafUnit>(units);
   layout.bounds = bvh.nodes[0].bounds();
-  layout.root = WideWriter(bvh, geometries, collapse, layout).write(0, 0, 0, 0);
+  layout.root = WideWriter(bvh, geometries, collapse, layout).write(0, 0, 0);
 }
 
 }  // namespace kerf
