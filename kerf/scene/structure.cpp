@@ -41,7 +41,7 @@ StructureStatistics measure(const Structure& structure) {
 
 namespace {
 
-constexpr LayoutEntry kLayouts[] = {kBvh2Layout, kBvh4Layout, kBvh8Layout, kQuantisedBvh8Layout,
+constexpr LayoutEntry kLayouts[] = {kBvh2Layout,        kBvh4Layout,    kBvh8Layout,     kQuantisedBvh8Layout,
                                     kSkipPointerLayout, kPacketsLayout, kLateSplitLayout};
 constexpr StructureEntry kStructures[] = {kKdSahStructure, kBihStructure,      kUniformGridStructure, kOctreeStructure,
                                           kBspStructure,   kQuadtreeStructure, kBruteForceStructure};

@@ -20,7 +20,7 @@
 namespace kerf {
 namespace {
 
-constexpr std::string_view kWideLayouts[] = {"bvh8", "bvh4"};
+constexpr std::string_view kWideLayouts[] = {"bvh8", "bvh4", "quantised_bvh8"};
 constexpr int kLeastBuilds = 3;
 constexpr double kSecondsOfBuilding = 30;  // for more builds than that, of all rows together
 constexpr const char* kTooLong = "tracing its rays took more than the time allowed";

@@ -262,7 +262,15 @@ class Judge {
                         single_ + ", of HIGH's");
   }
 
-  /// A row of the judged preset whose layout is called as the judged one's with something behind is its small form.
+  /// As the judged row's, but the layout "quantised_", or with something behind its name.
+  bool is_small_form(const std::string& name) const {
+    constexpr std::string_view kQuantised = "quantised_";
+    if (single_.empty() || name == single_) return false;
+    std::string small = single_;
+    return name.starts_with(single_) || name == small.insert(small.rfind(' ') + 1, kQuantised);
+  }
+
+  /// A row of the judged preset with a small form of the judged one's layout.
   Finding bytes_quantised() const {
     Scenes asked;
     for (const BenchScene& scene : alone_) {
@@ -273,7 +281,7 @@ class Judge {
     bool at_60 = false, at_50 = false;
     std::string text;
     for (const std::string& name : kerf_rows(asked, "")) {
-      if (single_.empty() || name == single_ || !name.starts_with(single_)) continue;
+      if (!is_small_form(name)) continue;
       const Column share = column_of(asked, [&](const BenchScene& scene) { return bytes_share(scene, name); });
       const double speed = overall_ratio(asked, name, Feed::loop) / full;
       if (share.missing() > 0 || std::isnan(speed)) continue;
