@@ -16,6 +16,7 @@
 #include "kerf/base/rounding.h"
 #include "kerf/base/transform.h"
 #include "kerf/base/work_limit.h"
+#include "tests/support/hostile_float.h"
 
 namespace kerf {
 namespace {
@@ -101,19 +102,23 @@ TEST(Parallel, InvokeNestsAndRethrows) {
                std::runtime_error);
 }
 
-#if defined(__SSE2__)
-TEST(StandardFloat, OverridesTheCallersFlushToZeroAndRestoresIt) {
-  const uint32_t before = _mm_getcsr();
-  _mm_setcsr(before | 0x8040);
-  volatile float small = 1e-40F;
+#if defined(KERF_HOSTILE_FLOAT)
+TEST(StandardFloat, OverridesTheCallersModeAndRestoresIt) {
+  volatile float small = 1e-40F, one = 1;
+  const test::HostileFloat hostile;
   {
     const StandardFloat standard;
+    EXPECT_FALSE(test::HostileFloat::is_on());
     EXPECT_GT(small * 0.5F, 0.0F);
-    parallel_for(4, 1, [&](size_t, size_t) { EXPECT_GT(small * 0.5F, 0.0F); });
+    EXPECT_EQ(one + small, 1.0F);
+    parallel_for(4, 1, [&](size_t, size_t) {
+      EXPECT_GT(small * 0.5F, 0.0F);
+      EXPECT_EQ(one + 1e-20F, 1.0F);
+    });
   }
+  EXPECT_TRUE(test::HostileFloat::is_on());
   EXPECT_EQ(small * 0.5F, 0.0F);
-  EXPECT_EQ(_mm_getcsr() & 0x8040U, 0x8040U);
-  _mm_setcsr(before);
+  EXPECT_GT(one + 1e-20F, 1.0F);
 }
 #endif
 

@@ -11,12 +11,9 @@
 
 #include "kerf/base/error.h"
 #include "kerf/scene/scene.h"
+#include "tests/support/hostile_float.h"
 #include "tests/support/random.h"
 #include "tests/support/structures.h"
-
-#if defined(__SSE2__)
-#include <xmmintrin.h>
-#endif
 
 namespace kerf::test {
 namespace {
@@ -183,19 +180,7 @@ TEST(Sizes, AreThosePromised) {
   EXPECT_EQ(Hit{}.t, std::numeric_limits<float>::infinity());
 }
 
-#if defined(__SSE2__)
-/// Flushes denormals to zero, takes them as zero and rounds up, as a host program may.
-class HostileFloat {
- public:
-  HostileFloat() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040 | 0x4000); }
-  ~HostileFloat() { _mm_setcsr(saved_); }
-  HostileFloat(const HostileFloat&) = delete;
-  HostileFloat& operator=(const HostileFloat&) = delete;
-
- private:
-  unsigned saved_;
-};
-
+#if defined(KERF_HOSTILE_FLOAT)
 TEST(Scene, TheCallersFloatingPointModeChangesNothing) {
   for (const float size : {1.0F, 1e-38F, 1e-40F, 1e-42F}) {
     Random random(3);

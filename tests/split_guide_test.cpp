@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "kerf/build/spatial_bins.h"
-#include "kerf/choose/rough_clip.h"
+#include "kerf/references/clipper.h"
 #include "kerf/choose/split_guide.h"
 #include "kerf/references/middle_cut.h"
 #include "tests/support/soup.h"

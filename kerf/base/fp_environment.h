@@ -37,10 +37,10 @@ class StandardFloat {
   static constexpr uint64_t kControl = 0x1C80000;  // FZ, rounding mode, FZ16
   static uint64_t read() {
     uint64_t value;
-    __asm__ volatile("mrs %0, fpcr" : "=r"(value));
+    __asm__ volatile("mrs %0, fpcr" : "=r"(value) : : "memory");
     return value;
   }
-  static void write(uint64_t value) { __asm__ volatile("msr fpcr, %0" : : "r"(value)); }
+  static void write(uint64_t value) { __asm__ volatile("msr fpcr, %0" : : "r"(value) : "memory"); }
   uint64_t saved_;
 #endif
 

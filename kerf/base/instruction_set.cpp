@@ -1,13 +1,12 @@
 #include "kerf/base/instruction_set.h"
 
-#include <hwy/targets.h>
-
 #include <cstdlib>
 #include <string>
 
 #include "kerf/base/error.h"
 #include "kerf/base/letter_case.h"
 #include "kerf/base/nearest_word.h"
+#include "kerf/base/simd_targets.h"
 
 namespace kerf {
 namespace {
@@ -32,17 +31,25 @@ std::string_view name_of(int64_t target) {
   return highway;
 }
 
+/// Then there is nothing to choose, and nothing of Highway's library is needed.
+constexpr bool kIsOnlyOne = (HWY_TARGETS & (HWY_TARGETS - 1)) == 0;
+
 /// Where HWY_EXPORT puts the function of a target; Highway's own choice, which is the whole program's, stays as it is.
 size_t place_of(int64_t target) {
-  if constexpr ((HWY_TARGETS & (HWY_TARGETS - 1)) == 0) return 0;  // its table has one function only
-  hwy::ChosenTarget chosen;
-  chosen.Update(target);
-  return chosen.GetIndex();
+  if constexpr (kIsOnlyOne) {
+    return 0;  // its table has one function only
+  } else {
+    hwy::ChosenTarget chosen;
+    chosen.Update(target);
+    return chosen.GetIndex();
+  }
 }
 
 std::vector<InstructionSet> all_sets() {
   std::vector<InstructionSet> all;
-  for (const int64_t target : hwy::SupportedAndGeneratedTargets()) all.push_back({name_of(target), place_of(target)});
+  if constexpr (!kIsOnlyOne) {
+    for (const int64_t target : hwy::SupportedAndGeneratedTargets()) all.push_back({name_of(target), place_of(target)});
+  }
   if (all.empty()) all.push_back({name_of(HWY_STATIC_TARGET), place_of(HWY_STATIC_TARGET)});
   return all;
 }

@@ -2,6 +2,8 @@
 
 #include <new>
 
+#include "kerf/base/parallel.h"
+
 #if defined(__linux__)
 #include <sys/mman.h>
 #endif
@@ -24,7 +26,8 @@ void* allocate_lines(size_t bytes) {
   // A wish: it works without. The last page may be shared with what follows, so it is left as it is.
   if (border == std::align_val_t{kHugePage}) madvise(memory, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
 #endif
-  std::memset(memory, 0, bytes);
+  parallel_for(bytes, kHugePage,
+               [&](size_t begin, size_t end) { std::memset(static_cast<std::byte*>(memory) + begin, 0, end - begin); });
   return memory;
 }
 

@@ -3,6 +3,8 @@
 // run time. Only code in HWY_NAMESPACE may stand between HWY_BEFORE_NAMESPACE and HWY_AFTER_NAMESPACE: an inline
 // function outside might be kept by the linker in its AVX-512 form for everyone.
 
+#include "kerf/base/simd_targets.h"
+
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"  // false ones from g++ 12's AVX-512 headers

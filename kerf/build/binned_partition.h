@@ -2,11 +2,10 @@
 
 #include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 
-#include "kerf/base/float4.h"
 #include "kerf/build/reference_order.h"
+#include "kerf/references/box4.h"
 
 namespace kerf {
 namespace detail {
@@ -20,38 +19,26 @@ inline uint32_t bins_for(uint32_t references, uint32_t most) {
   return std::min(most, kFewest + references / kEach);
 }
 
-/// The references whose centres lie in one slice of a node. Two registers and a count; the fourth lanes mean nothing.
-/// Without initial values: a node uses few of kMostBins, and setting all of them up was measured at a quarter of the
-/// build.
+/// The references whose centres lie in one slice of a node.
 struct Bin {
-  Float4 lower, upper;
+  Box4 box;
   uint32_t count;
 
   void clear() {
-    constexpr float kInfinity = Box3f::kInfinity;
-    lower = Float4{kInfinity, kInfinity, kInfinity, kInfinity};
-    upper = -lower;
+    box = Box4::empty();
     count = 0;
   }
-  void add(Float4 from, Float4 to) {
-    lower = min(from, lower);
-    upper = max(to, upper);
+  void add(const Box4& reference) {
+    box.extend(reference);
     ++count;
   }
   void add(const Bin& other) {
-    lower = min(other.lower, lower);
-    upper = max(other.upper, upper);
+    box.extend(other.box);
     count += other.count;
   }
-  Box3f box() const { return {{lower[0], lower[1], lower[2]}, {upper[0], upper[1], upper[2]}}; }
   /// Half the area times count; not of an empty one.
-  double cost() const {
-    const Float4 extent = upper - lower;
-    const double x = extent[0], y = extent[1], z = extent[2];
-    return (x * (y + z) + y * z) * count;
-  }
+  double cost() const { return box.half_area() * count; }
 };
-static_assert(offsetof(Reference, lower) == 0 && offsetof(Reference, upper) == 16, "loaded as registers");
 
 /// Which slice a reference's centre lies in, along each axis.
 struct Slices {
@@ -79,10 +66,11 @@ using Bins = std::array<std::array<Bin, kMostBins>, 3>;
 inline void fill(std::span<const Reference> references, const Slices& slices, Bins& bins) {
   for (auto& line : bins) std::for_each_n(line.begin(), slices.bins, [](Bin& bin) { bin.clear(); });
   for (const Reference& reference : references) {
-    const Float4 lower = load4(&reference.lower.x), upper = load4(&reference.upper.x);
-    const Float4 places = slices.places(lower + upper);
-    for (uint32_t axis = 0; axis < 3; ++axis)
-      bins[axis][static_cast<uint32_t>(static_cast<int32_t>(places[axis]))].add(lower, upper);
+    const Box4 box = Box4::of(reference);
+    const Float4 places = slices.places(box.lower + box.upper);
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+      bins[axis][static_cast<uint32_t>(static_cast<int32_t>(places[axis]))].add(box);
+    }
   }
 }
 

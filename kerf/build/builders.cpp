@@ -20,7 +20,8 @@ constexpr auto with_shared(const OptionSpec (&own)[kOwn]) {
   return specs;
 }
 
-constexpr OptionSpec kBins = {"bins", "slices along each axis, fewer in small nodes; the planes tried lie between them", 32, 2, 256, true};
+constexpr OptionSpec kBins = {
+    "bins", "slices along each axis, fewer in small nodes; the planes tried lie between them", 32, 2, 256, true};
 constexpr OptionSpec kSeed = {"seed", "another number gives another tree", 1, 0, 0x1p32, true};
 
 constexpr auto kBinnedOptions = with_shared({kBins, {"planes", "the same as bins = planes + 1", 31, 1, 255, true}});
@@ -31,6 +32,7 @@ constexpr auto kSpatialOptions = with_shared(
      {"spatial_bins", "slices of the node's box along each axis; the planes that cut lie between them", 16, 2,
       SpatialSlices::kMost, true},
      {"overlap", "cuts are tried where halves overlap by more than this share of the root's area", 1e-5, 0, 1},
+     {"node_overlap", "and by more than this share of their node's area", 0, 0, 1},
      {"favour", "times the cost of the best division without cuts that one with cuts may cost", 1.1, 0.5, 2},
      {"cap", "references for each one given, on average, that are never passed", 2, 1, 64}});
 constexpr auto kRandomOptions = with_shared({{"candidates", "planes tried at each node", 16, 1, 256, true}, kSeed});

@@ -29,14 +29,14 @@ double Collapse::choose(uint32_t n, uint32_t depth) {
   const double area = half_area(node.bounds());
   if (node.is_leaf()) {
     summaries_[n].slots = tree_.slot_count(node);
-    return rule_.primitive_cost * area * summaries_[n].slots;
+    return rule_.as_leaf(summaries_[n].slots) * area;
   }
   double cost[2];
   both(
       depth, [&] { cost[0] = choose(node.below, depth + 1); }, [&] { cost[1] = choose(node.below + 1, depth + 1); });
   const Summary &a = summaries_[node.below], &b = summaries_[node.below + 1];
   const double inner = rule_.inner_cost * area + cost[0] + cost[1];
-  const double leaf = rule_.primitive_cost * area * (a.slots + b.slots);
+  const double leaf = rule_.as_leaf(a.slots + b.slots) * area;
   const bool is_leaf = a.slots + b.slots <= rule_.leaf_size && leaf <= inner;
   summaries_[n] = {a.slots + b.slots, is_leaf ? 0 : a.nodes + b.nodes + 2};
   return is_leaf ? leaf : inner;

@@ -11,6 +11,9 @@ namespace kerf {
 struct LeafRule {
   uint32_t leaf_size = 4;  ///< slots in a leaf that is made, at most
   double inner_cost = 1, primitive_cost = 1;
+  double leaf_cost = 0;  ///< besides its primitives
+
+  double as_leaf(uint32_t slots) const { return leaf_cost + primitive_cost * slots; }
 };
 
 /// The cheapest tree by the surface area heuristic that comes from making some of a tree's subtrees leaves; leaves that

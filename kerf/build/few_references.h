@@ -5,8 +5,7 @@
 #include <limits>
 #include <span>
 
-#include "kerf/base/float4.h"
-#include "kerf/references/reference.h"
+#include "kerf/references/box4.h"
 
 namespace kerf {
 
@@ -18,7 +17,11 @@ class FewReferences {
 
   /// Of at least two references, at most kMost.
   explicit FewReferences(std::span<const Reference> references) : references_(references) {
-    for (uint32_t axis = 0; axis < 3; ++axis) try_axis(axis);
+    if (references.size() == 2) {
+      divide_two();
+    } else {
+      for (uint32_t axis = 0; axis < 3; ++axis) try_axis(axis);
+    }
   }
 
   /// Area times count, both sides added; infinite: all centres are in one place.
@@ -40,19 +43,25 @@ class FewReferences {
   using Order = std::array<uint8_t, kMost>;
 
   Box3f bounds(size_t begin, size_t end) const {
-    Box3f box;
-    for (size_t i = begin; i < end; ++i) box.extend(references_[best_[i]].bounds());
-    return box;
+    Box4 box = Box4::empty();
+    for (size_t i = begin; i < end; ++i) box.extend(Box4::of(references_[best_[i]]));
+    return box.box();
   }
 
-  /// Half the area of a box in registers.
-  static double area(Float4 lower, Float4 upper) {
-    const Float4 extent = upper - lower;
-    const double x = extent[0], y = extent[1], z = extent[2];
-    return x * (y + z) + y * z;
+  float key(size_t i, uint32_t axis) const { return references_[i].lower[axis] + references_[i].upper[axis]; }
+
+  /// Most often there are two, and the cost is the same along all axes.
+  void divide_two() {
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+      const float first = key(0, axis), second = key(1, axis);
+      if (first == second) continue;
+      cost_ = Box4::of(references_[0]).half_area() + Box4::of(references_[1]).half_area();
+      left_ = 1;
+      best_[0] = first < second ? 0 : 1;
+      best_[1] = first < second ? 1 : 0;
+      return;
+    }
   }
-  Float4 lower(size_t i) const { return load4(&references_[i].lower.x); }
-  Float4 upper(size_t i) const { return load4(&references_[i].upper.x); }
 
   /// Where each of the keys goes: behind all that are less, and those equal to it before it.
   static void put_in_order(const std::array<float, kMost>& keys, size_t count, Order& order) {
@@ -70,23 +79,20 @@ class FewReferences {
   void try_axis(uint32_t axis) {
     const size_t count = references_.size();
     std::array<float, kMost> keys;
-    for (size_t i = 0; i < count; ++i) keys[i] = references_[i].lower[axis] + references_[i].upper[axis];
+    for (size_t i = 0; i < count; ++i) keys[i] = key(i, axis);
     Order order;
     put_in_order(keys, count, order);
     if (keys[order[0]] == keys[order[count - 1]]) return;
     std::array<double, kMost> right;
-    Float4 from = lower(order[count - 1]), to = upper(order[count - 1]);
+    Box4 box = Box4::of(references_[order[count - 1]]);
     for (size_t i = count - 1; i > 0; --i) {
-      from = min(lower(order[i]), from);
-      to = max(upper(order[i]), to);
-      right[i] = area(from, to) * static_cast<double>(count - i);
+      box.extend(Box4::of(references_[order[i]]));
+      right[i] = box.half_area() * static_cast<double>(count - i);
     }
-    from = lower(order[0]);
-    to = upper(order[0]);
+    box = Box4::of(references_[order[0]]);
     for (size_t i = 1; i < count; ++i) {
-      from = min(lower(order[i - 1]), from);
-      to = max(upper(order[i - 1]), to);
-      const double cost = area(from, to) * static_cast<double>(i) + right[i];
+      box.extend(Box4::of(references_[order[i - 1]]));
+      const double cost = box.half_area() * static_cast<double>(i) + right[i];
       if (keys[order[i - 1]] == keys[order[i]] || !(cost < cost_)) continue;
       cost_ = cost;
       left_ = static_cast<uint32_t>(i);

@@ -55,7 +55,7 @@ class BvhOfJoins {
   Part settle(uint32_t part, uint32_t depth) {
     if (!tree_.is_join(part)) {
       const Box3f box = tree_.references[part].bounds();
-      return {box, options_.primitive_cost * half_area(box)};
+      return {box, options_.as_leaf(1) * half_area(box)};
     }
     Join& join = tree_.join(part);
     if (depth == options_.max_depth) return leaf(part);
@@ -68,7 +68,7 @@ class BvhOfJoins {
     if (join.references > options_.leaf_size) return {};
     const Box3f bounds = united(left.bounds, right.bounds);
     const double area = half_area(bounds);
-    const double as_leaf = options_.primitive_cost * join.references * area;
+    const double as_leaf = options_.as_leaf(join.references) * area;
     const double as_inner = options_.inner_cost * area + left.cost + right.cost;
     if (as_leaf <= as_inner) join.nodes = 0;
     return {bounds, std::min(as_leaf, as_inner)};
@@ -80,7 +80,7 @@ class BvhOfJoins {
     for (const uint32_t reference : parts_below(part).references) {
       result.bounds.extend(tree_.references[reference].bounds());
     }
-    result.cost = options_.primitive_cost * tree_.join(part).references * half_area(result.bounds);
+    result.cost = options_.as_leaf(tree_.join(part).references) * half_area(result.bounds);
     return result;
   }
 

@@ -9,6 +9,7 @@ constexpr OptionSpec kReinsertionOptions[] = {
     {"leaf", "references in a leaf made of several, at most; the builder's leaves stay whole", 4, 1, 255, true},
     {"inner_cost", "cost of visiting a node, for the leaf decision", 1, 0},
     {"primitive_cost", "cost of testing a primitive, for the leaf decision", 1, 0, 1e30, false, true},
+    {"leaf_cost", "cost of visiting a leaf, besides its primitives, for the leaf decision", 0, 0, 1e30},
 };
 
 constexpr OptimiserEntry kOptimisers[] = {

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "kerf/base/parallel.h"
@@ -107,23 +109,69 @@ class Search {
   std::array<Waiting, kMaxDepth + 2> waiting_;  // one on each level, and both on the last
 };
 
+/// The nodes of a tree in classes by the area of their boxes, a sixteenth of a power of two wide: what sorts them
+/// roughly in one run over them.
+class AreaClasses {
+ public:
+  static constexpr uint32_t kFirst = MovableTree::kRoot + 1;
+
+  explicit AreaClasses(const MovableTree& tree) : tree_(tree), held_(tree.end() * sizeof(uint16_t)), of_(tree.end()) {
+    std::vector<Counts> blocks((tree.end() - kFirst + kGrain - 1) / kGrain);
+    parallel_for(tree.end() - kFirst, kGrain, [&](size_t begin, size_t end) {
+      Counts& counts = blocks[begin / kGrain];
+      counts.resize(kClasses);
+      for (size_t n = kFirst + begin; n < kFirst + end; ++n) {
+        of_[n] = static_cast<uint16_t>(std::bit_cast<uint64_t>(area(static_cast<uint32_t>(n))) >> kDroppedBits);
+        ++counts[of_[n]];
+      }
+    });
+    counts_.resize(kClasses);
+    for (const Counts& block : blocks)
+      std::transform(counts_.begin(), counts_.end(), block.begin(), counts_.begin(), std::plus<>());
+  }
+
+  double area(uint32_t n) const { return half_area(tree_[n].bounds()); }
+
+  /// The so many with the largest boxes, in order.
+  std::vector<uint32_t> largest(size_t wanted) const {
+    size_t above = 0;  // in classes that are taken whole
+    uint32_t last = kClasses - 1;
+    while (above + counts_[last] < wanted) above += counts_[last--];
+    std::vector<uint32_t> nodes, some;
+    nodes.reserve(wanted + counts_[last]);
+    for (uint32_t n = kFirst; n < tree_.end(); ++n) {
+      if (of_[n] >= last) nodes.push_back(n);
+      if (of_[n] == last) some.push_back(n);
+    }
+    const auto end_of_taken = some.begin() + static_cast<ptrdiff_t>(wanted - above);
+    std::nth_element(some.begin(), end_of_taken, some.end(),
+                     [&](uint32_t a, uint32_t b) { return area(a) != area(b) ? area(a) > area(b) : a < b; });
+    std::sort(end_of_taken, some.end());
+    const auto is_left = [&](uint32_t n) { return of_[n] == last && std::binary_search(end_of_taken, some.end(), n); };
+    nodes.erase(std::remove_if(nodes.begin(), nodes.end(), is_left), nodes.end());
+    return nodes;
+  }
+
+ private:
+  using Counts = std::vector<uint32_t>;
+  static constexpr size_t kGrain = 65536;
+  static constexpr uint32_t kDroppedBits = 48;  // of an area, which is not negative: its exponent and 4 bits stay
+  static constexpr uint32_t kClasses = 1U << 15;
+
+  const MovableTree& tree_;
+  HeldBytes held_;
+  std::vector<uint16_t> of_;
+  Counts counts_;
+};
+
 /// The nodes with the largest boxes, `share` of all but the root, in order: where most can be saved. Small trees: all.
 std::vector<uint32_t> largest_nodes(const MovableTree& tree, double share) {
-  constexpr uint32_t kFirst = MovableTree::kRoot + 1;
-  std::vector<uint32_t> nodes(tree.end() - kFirst);
-  std::iota(nodes.begin(), nodes.end(), kFirst);
   constexpr size_t kFew = 1024;  // hardly cost anything
-  const auto wanted = std::max(kFew, static_cast<size_t>(std::ceil(share * static_cast<double>(nodes.size()))));
-  if (wanted >= nodes.size()) return nodes;
-  const HeldBytes held(tree.end() * (sizeof(double) + sizeof(uint32_t)));
-  std::vector<double> areas(tree.end());
-  parallel_for(nodes.size(), 16384, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) areas[nodes[i]] = half_area(tree[nodes[i]].bounds());
-  });
-  std::nth_element(nodes.begin(), nodes.begin() + static_cast<ptrdiff_t>(wanted), nodes.end(),
-                   [&](uint32_t a, uint32_t b) { return areas[a] != areas[b] ? areas[a] > areas[b] : a < b; });
-  nodes.resize(wanted);
-  std::sort(nodes.begin(), nodes.end());
+  const size_t all = tree.end() - AreaClasses::kFirst;
+  const auto wanted = std::max(kFew, static_cast<size_t>(std::ceil(share * static_cast<double>(all))));
+  if (wanted < all) return AreaClasses(tree).largest(wanted);
+  std::vector<uint32_t> nodes(all);
+  std::iota(nodes.begin(), nodes.end(), AreaClasses::kFirst);
   return nodes;
 }
 
@@ -188,7 +236,8 @@ Bvh optimise_reinsertion(Bvh bvh, const OptionValues& options, const WorkLimit& 
     if (!make_moves(tree, find_moves(tree, largest_nodes(tree, options["share"]), limit), limit)) break;
   }
   limit.check();
-  const LeafRule rule{static_cast<uint32_t>(options["leaf"]), options["inner_cost"], options["primitive_cost"]};
+  const LeafRule rule{static_cast<uint32_t>(options["leaf"]), options["inner_cost"], options["primitive_cost"],
+                      options["leaf_cost"]};
   return Collapse(tree, rule).bvh(bvh.slots);
 }
 

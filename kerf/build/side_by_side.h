@@ -5,38 +5,27 @@
 #include <span>
 #include <vector>
 
-#include "kerf/base/float4.h"
 #include "kerf/base/parallel.h"
 #include "kerf/build/top_down.h"
+#include "kerf/references/box4.h"
 
 namespace kerf::detail {
 
-/// The box around references and that around their lower + upper, in registers; fourth lanes mean nothing.
+/// The box around references and that around their lower + upper.
 struct Measure {
-  Float4 lower, upper, lower_center, upper_center;
+  Box4 bounds, centers;
 
-  void clear() {
-    constexpr float kInfinity = Box3f::kInfinity;
-    lower = lower_center = Float4{kInfinity, kInfinity, kInfinity, kInfinity};
-    upper = upper_center = -lower;
-  }
-  void add(Float4 from, Float4 to) {
-    const Float4 center2 = from + to;
-    lower = min(from, lower);
-    upper = max(to, upper);
-    lower_center = min(center2, lower_center);
-    upper_center = max(center2, upper_center);
+  void clear() { bounds = centers = Box4::empty(); }
+  void add(const Box4& reference) {
+    bounds.extend(reference);
+    const Float4 center2 = reference.lower + reference.upper;
+    centers.extend({center2, center2});
   }
   void add(const Measure& other) {
-    lower = min(other.lower, lower);
-    upper = max(other.upper, upper);
-    lower_center = min(other.lower_center, lower_center);
-    upper_center = max(other.upper_center, upper_center);
+    bounds.extend(other.bounds);
+    centers.extend(other.centers);
   }
-  Subset subset(uint32_t begin, uint32_t end) const {
-    return {begin, end, box(lower, upper), box(lower_center, upper_center)};
-  }
-  static Box3f box(Float4 from, Float4 to) { return {{from[0], from[1], from[2]}, {to[0], to[1], to[2]}}; }
+  Subset subset(uint32_t begin, uint32_t end) const { return {begin, end, bounds.box(), centers.box()}; }
 };
 
 inline constexpr uint32_t kMeasureGrain = 32768;  // references that one task looks at
@@ -44,7 +33,7 @@ inline constexpr uint32_t kMeasureGrain = 32768;  // references that one task lo
 inline Measure measure(std::span<const Reference> references) {
   Measure measure;
   measure.clear();
-  for (const Reference& r : references) measure.add(load4(&r.lower.x), load4(&r.upper.x));
+  for (const Reference& r : references) measure.add(Box4::of(r));
   return measure;
 }
 
@@ -73,7 +62,7 @@ uint32_t put_part(std::span<Reference> part, const F& goes_left, Measure (&sides
   for (const Reference& reference : part) {
     const Reference moved = reference;
     const size_t is_right = goes_left(moved) ? 0 : 1;
-    sides[is_right].add(load4(&moved.lower.x), load4(&moved.upper.x));
+    sides[is_right].add(Box4::of(moved));
     part[left_count] = moved;
     right[right_count] = moved;
     left_count += 1 - is_right;

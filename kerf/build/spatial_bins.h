@@ -26,8 +26,8 @@ class SpatialSlices {
   /// Plane 0 and plane count() are the box's sides.
   float plane(uint32_t axis, uint32_t i) const { return planes_[axis][i]; }
 
-  /// The slices that a reference reaches into; a side that lies in a plane does not reach past it. So a reference with
-  /// last < i lies below plane i, and of the others one with first >= i above it.
+  /// The slices that a reference within the box reaches into; a side that lies in a plane does not reach past it. So a
+  /// reference with last < i lies below plane i, and of the others one with first >= i above it.
   Span span(const Reference& reference, uint32_t axis) const;
 
  private:

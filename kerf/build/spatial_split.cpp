@@ -9,7 +9,7 @@ namespace {
 /// Of this builder, besides what all top-down builders share.
 struct SpatialSplitOptions {
   uint32_t bins, spatial_bins;
-  double overlap, favour;
+  double overlap, node_overlap, favour;
 };
 
 /// The best division of whole references, as BinnedSah finds it.
@@ -17,28 +17,31 @@ class WholeDivision {
  public:
   WholeDivision(std::span<const Reference> references, const Subset& subset, uint32_t bin_count)
       : slices_(subset.centers, detail::bins_for(subset.count(), bin_count)) {
-    Box3f left, right;
+    Box4 left = Box4::empty(), right = left;
     if (subset.count() <= std::min(bin_count, FewReferences::kMost)) {
       few_.emplace(references);
       cost_ = few_->cost();
-      if (is_found()) left = few_->left_bounds();
-      if (is_found()) right = few_->right_bounds();
+      if (is_found()) left = Box4::of(few_->left_bounds());
+      if (is_found()) right = Box4::of(few_->right_bounds());
     } else {
       detail::Bins bins;
       detail::fill_parallel(references, slices_, bins);
       plane_ = detail::cheapest_plane(bins, slices_);
       cost_ = plane_.cost;
       for (uint32_t i = 0; is_found() && i < slices_.bins; ++i) {
-        (i < plane_.bin ? left : right).extend(bins[plane_.axis][i].box());
+        (i < plane_.bin ? left : right).extend(bins[plane_.axis][i].box);
       }
     }
-    overlap_ = half_area(is_found() ? intersected(left, right) : subset.bounds);
+    overlap_ = half_area(is_found() ? intersected(left.box(), right.box()) : subset.bounds);
+    if (is_found()) areas_ = left.half_area() + right.half_area();
   }
 
   bool is_found() const { return !std::isinf(cost_); }
   double cost() const { return cost_; }
   /// Half the area of what the boxes on both sides have in common; without a division, of the whole.
   double overlap() const { return overlap_; }
+  /// Of a division.
+  detail::AreaSums sums() const { return {areas_, cost_}; }
 
   Halves apply(SpatialOrder& order, const Subset& subset) const {
     if (!is_found()) return order.halve(subset);
@@ -50,7 +53,7 @@ class WholeDivision {
   detail::Slices slices_;
   detail::Plane plane_;
   std::optional<FewReferences> few_;
-  double cost_ = 0, overlap_ = 0;
+  double cost_ = 0, overlap_ = 0, areas_ = 0;
 };
 
 /// At each node the cheaper of the best division of whole references and the best plane to cut at (Stich, Friedrich,
@@ -72,10 +75,15 @@ class SpatialSplit {
     const uint64_t most = detail::capacity(shared_.leaf_size, shared_.max_depth - depth - 1);
     const WholeDivision whole(order_.references(subset), subset, own_.bins);
     const SpatialPlane spatial =
-        whole.overlap() > least_overlap_ ? find_spatial(subset, whole.cost(), most) : SpatialPlane{};
-    const double cost = spatial.is_found() ? spatial.cost : whole.cost();
-    if (subset.count() <= shared_.leaf_size && (std::isinf(cost) || detail::leaf_is_cheaper(subset, cost, shared_))) {
-      return std::nullopt;
+        whole.overlap() > std::max(least_overlap_, own_.node_overlap * half_area(subset.bounds))
+            ? find_spatial(subset, whole.cost(), most)
+            : SpatialPlane{};
+    if (subset.count() <= shared_.leaf_size) {
+      if (!spatial.is_found() && !whole.is_found()) return std::nullopt;
+      const detail::AreaSums sums =
+          spatial.is_found() ? detail::AreaSums{half_area(spatial.below) + half_area(spatial.above), spatial.cost}
+                             : whole.sums();
+      if (detail::leaf_is_cheaper(subset, sums, shared_)) return std::nullopt;
     }
     Halves halves = spatial.is_found() ? order_.cut(subset, spatial, clipper_) : divide_whole(subset, whole, most);
     order_.make_room(subset, halves);
@@ -90,7 +98,7 @@ class SpatialSplit {
     if (subset.spare == 0) return {};
     double cost = own_.favour * object_cost;
     if (subset.count() <= shared_.leaf_size) {
-      const double leaf = subset.count() - shared_.inner_cost / shared_.primitive_cost;
+      const double leaf = subset.count() + (shared_.leaf_cost - shared_.inner_cost) / shared_.primitive_cost;
       cost = std::min(cost, leaf * half_area(subset.bounds));
     }
     const SpatialSlices slices(subset.bounds, own_.spatial_bins);
@@ -171,7 +179,8 @@ Bvh build_spatial_split(BuildInput input, const OptionValues& options) {
                                                   input.limit.bytes / kSpatialSplitBytes}));
   SpatialOrder order(std::move(input.references), room);
   SpatialSplit divider(order, input.clipper,
-                       {bins, static_cast<uint32_t>(options["spatial_bins"]), options["overlap"], options["favour"]},
+                       {bins, static_cast<uint32_t>(options["spatial_bins"]), options["overlap"],
+                        options["node_overlap"], options["favour"]},
                        shared);
   TreePart tree = detail::build_parts(divider, order.whole(), shared, input.limit);
   HeldBytes slots(room * sizeof(LeafSlot));

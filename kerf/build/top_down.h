@@ -51,16 +51,24 @@ struct TopDownOptions {
   double inner_cost = 1;  ///< of visiting an inner node, against primitive_cost for a primitive test
   double primitive_cost = 1;
   bool larger_first = true;  ///< the child with more references is the first; else the left one of the partition
+  double leaf_cost = 0;      ///< of visiting a leaf, besides its primitives
+
+  double as_leaf(double references) const { return leaf_cost + primitive_cost * references; }
 
   static constexpr OptionSpec kSpecs[] = {
       {"leaf", "references in a leaf, at most", 4, 1, 255, true},
       {"depth", "depth of the tree, at most", kMaxDepth, 1, kMaxDepth, true},
       {"inner_cost", "cost of visiting a node, for the leaf decision", 1, 0},
       {"primitive_cost", "cost of testing a primitive, for the leaf decision", 1, 0, 1e30, false, true},
+      {"leaf_cost", "cost of visiting a leaf, besides its primitives, for the leaf decision", 0, 0, 1e30},
   };
   static TopDownOptions from(const OptionValues& values) {
-    return {static_cast<uint32_t>(values["leaf"]), static_cast<uint32_t>(values["depth"]), values["inner_cost"],
-            values["primitive_cost"], true};
+    return {static_cast<uint32_t>(values["leaf"]),
+            static_cast<uint32_t>(values["depth"]),
+            values["inner_cost"],
+            values["primitive_cost"],
+            true,
+            values["leaf_cost"]};
   }
 };
 
@@ -150,16 +158,26 @@ class Recursion {
   const WorkLimit& limit_;
 };
 
-/// The surface area heuristic (Goldsmith and Salmon 1987; MacDonald and Booth 1990): is a leaf at most as dear as two
-/// halves whose areas times counts add up to `below`?
-inline bool leaf_is_cheaper(const Subset& subset, double below, const TopDownOptions& options) {
+/// Areas of two halves, added up, and the same times their counts.
+struct AreaSums {
+  double areas = 0, areas_times_counts = 0;
+
+  static AreaSums of(const Halves& halves) {
+    const double left = half_area(halves.left.bounds), right = half_area(halves.right.bounds);
+    return {left + right, left * halves.left.count() + right * halves.right.count()};
+  }
+};
+
+/// The surface area heuristic (Goldsmith and Salmon 1987; MacDonald and Booth 1990): is a leaf at most as dear as two?
+inline bool leaf_is_cheaper(const Subset& subset, const AreaSums& halves, const TopDownOptions& options) {
   const double area = half_area(subset.bounds);
-  return options.primitive_cost * subset.count() * area <= options.inner_cost * area + options.primitive_cost * below;
+  return options.as_leaf(subset.count()) * area <= options.inner_cost * area + options.leaf_cost * halves.areas +
+                                                       options.primitive_cost * halves.areas_times_counts;
 }
 
 /// Is it, whatever the halves?
 inline bool leaf_is_cheapest(const Subset& subset, const TopDownOptions& options) {
-  return options.primitive_cost * subset.count() <= options.inner_cost;
+  return options.as_leaf(subset.count()) <= options.inner_cost;
 }
 
 /// A partition with the leaf decision and the depth bound.
@@ -179,14 +197,10 @@ class TopDown {
     // Where no plane divides, or a lopsided one would break the depth bound further down: equal counts keep it.
     const uint64_t room = capacity(options_.leaf_size, options_.max_depth - depth - 1);
     if (!halves || halves->left.count() > room || halves->right.count() > room) halves = partition_.halve(subset);
-    return fits_leaf && leaf_is_cheaper(subset, cost_of(*halves), options_) ? std::nullopt : halves;
+    return fits_leaf && leaf_is_cheaper(subset, AreaSums::of(*halves), options_) ? std::nullopt : halves;
   }
 
  private:
-  static double cost_of(const Halves& halves) {
-    return half_area(halves.left.bounds) * halves.left.count() + half_area(halves.right.bounds) * halves.right.count();
-  }
-
   P& partition_;
   const TopDownOptions& options_;
 };

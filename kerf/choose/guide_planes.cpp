@@ -6,6 +6,7 @@
 
 #include "kerf/build/reference_order.h"
 #include "kerf/build/spatial_bins.h"
+#include "kerf/references/box4.h"
 
 namespace kerf {
 namespace {
@@ -17,20 +18,26 @@ static_assert(kBins <= SpatialSlices::kMost);
 constexpr float kLeastLength = 0.5F;
 
 uint32_t bin_of(float center, float first, float scale) {
-  return static_cast<uint32_t>(std::clamp((center - first) * scale, 0.0F, static_cast<float>(kBins - 1)));
+  return static_cast<uint32_t>(
+      static_cast<int32_t>(std::clamp((center - first) * scale, 0.0F, static_cast<float>(kBins - 1))));
 }
 
 /// Slices of a node along one axis: the box of what has its centre there, and how much that is.
 struct Line {
-  std::array<Box3f, kBins> bounds;
-  std::array<double, kBins> weights{};
+  std::array<Box4, kBins> bounds;
+  std::array<double, kBins> weights;
+
+  void clear() {
+    bounds.fill(Box4::empty());
+    weights.fill(0);
+  }
 };
 
 /// Takes the cheapest place between two slices, if it is cheaper than `best`; returns whether it did.
 bool take_cheapest(const Line& line, GuidePlane& best) {
-  std::array<Box3f, kBins> above;
-  std::array<double, kBins> above_weight{};
-  Box3f box;
+  std::array<Box4, kBins> above;
+  std::array<double, kBins> above_weight;
+  Box4 box = Box4::empty();
   double weight = 0;
   for (uint32_t i = kBins - 1; i > 0; --i) {
     box.extend(line.bounds[i]);
@@ -38,19 +45,19 @@ bool take_cheapest(const Line& line, GuidePlane& best) {
     above[i] = box;
     above_weight[i] = weight;
   }
-  box = {};
+  box = Box4::empty();
   weight = 0;
   bool found = false;
   for (uint32_t i = 1; i < kBins; ++i) {
     box.extend(line.bounds[i - 1]);
     weight += line.weights[i - 1];
     if (weight == 0 || above_weight[i] == 0) continue;
-    const double cost = half_area(box) * weight + half_area(above[i]) * above_weight[i];
+    const double cost = box.half_area() * weight + above[i].half_area() * above_weight[i];
     if (!(cost < best.cost)) continue;
     best.cost = cost;
     best.bin = i;
-    best.below = box;
-    best.above = above[i];
+    best.below = box.box();
+    best.above = above[i].box();
     best.below_weight = weight;
     best.above_weight = above_weight[i];
     found = true;
@@ -74,32 +81,43 @@ GuidePlane::Side GuidePlane::side_of(const Box3f& reference, double weight) cons
 }
 
 JudgedBox::JudgedBox(const Judges& judges) {
+  Box4 around = Box4::empty(), around_centers = around;
   for (const Reference& reference : judges.references) {
-    bounds.extend(reference.bounds());
-    centers.extend(reference.lower + reference.upper);
+    const Box4 box = Box4::of(reference);
+    const Float4 center2 = box.lower + box.upper;
+    around.extend(box);
+    around_centers.extend({center2, center2});
   }
+  bounds = around.box();
+  centers = around_centers.box();
   for (const float judge : judges.weights) weight += judge;
   all = bounds;
   for (const Box3f& other : judges.others) all.extend(other);
 }
 
 GuidePlane cheapest_dividing_plane(const Judges& judges, const JudgedBox& box) {
+  std::array<Line, 3> lines;
+  std::array<float, 3> scales;
+  for (uint32_t axis = 0; axis < 3; ++axis) {
+    lines[axis].clear();
+    const float scale = static_cast<float>(kBins) / (box.centers.upper[axis] - box.centers.lower[axis]);
+    scales[axis] = std::isfinite(scale) ? scale : 0;  // all centres are in one place, or as good as
+  }
+  for (size_t i = 0; i < judges.size(); ++i) {
+    const Reference& reference = judges.references[i];
+    const Box4 bounds = Box4::of(reference);
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+      const uint32_t bin = bin_of(center2(reference, axis), box.centers.lower[axis], scales[axis]);
+      lines[axis].bounds[bin].extend(bounds);
+      lines[axis].weights[bin] += judges.weights[i];
+    }
+  }
   GuidePlane best;
   for (uint32_t axis = 0; axis < 3; ++axis) {
-    const float first = box.centers.lower[axis];
-    const float scale = static_cast<float>(kBins) / (box.centers.upper[axis] - first);
-    if (!(scale > 0 && std::isfinite(scale))) continue;
-    Line line;
-    for (size_t i = 0; i < judges.size(); ++i) {
-      const Reference& reference = judges.references[i];
-      const uint32_t bin = bin_of(center2(reference, axis), first, scale);
-      line.bounds[bin].extend(reference.bounds());
-      line.weights[bin] += judges.weights[i];
-    }
-    if (!take_cheapest(line, best)) continue;
+    if (scales[axis] == 0 || !take_cheapest(lines[axis], best)) continue;
     best.axis = axis;
-    best.first = first;
-    best.scale = scale;
+    best.first = box.centers.lower[axis];
+    best.scale = scales[axis];
   }
   return best;
 }

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "kerf/base/parallel.h"
-#include "kerf/choose/rough_clip.h"
+#include "kerf/references/clipper.h"
 #include "kerf/references/middle_cut.h"
 
 namespace kerf {

@@ -27,6 +27,9 @@ WideCollapse::WideCollapse(const Bvh& bvh, std::span<const Geometry> geometries,
       held_(bvh.nodes.size() * sizeof(Plan)) {
   assert(width >= 2 && width <= kMostChildren && most <= kMostNumbers);
   plans_.resize(bvh.nodes.size());
+  only_triangles_ = std::all_of(geometries.begin(), geometries.end(), [](const Geometry& geometry) {
+    return std::holds_alternative<TriangleMesh>(geometry.shapes);
+  });
   const double root = half_area(bvh.nodes[0].bounds());
   scale_ = root > 0 ? 1 / root : 0;
   cost_ = solve(0, 0)[0];
@@ -34,6 +37,7 @@ WideCollapse::WideCollapse(const Bvh& bvh, std::span<const Geometry> geometries,
 }
 
 bool WideCollapse::are_triangles(uint32_t node) const {
+  if (only_triangles_) return true;
   const std::span<const LeafSlot> slots = std::span(bvh_.slots).subspan(bvh_.nodes[node].first, bvh_.nodes[node].count);
   return std::all_of(slots.begin(), slots.end(), [&](const LeafSlot& slot) {
     return std::holds_alternative<TriangleMesh>(geometries_[slot.geometry()].shapes);
@@ -61,6 +65,8 @@ WideCollapse::Costs WideCollapse::solve_leaf(uint32_t node) {
   const bool fits = count <= TriangleLeaf::kMost;
   plan.set_leaf();
   if (fits) plan.set_slots(count);
+  const auto all = std::span(bvh_.slots).subspan(n.first, n.count);
+  if (std::any_of(all.begin(), all.end(), [](const LeafSlot& slot) { return slot.is_repeated(); })) plan.set_repeated();
   const double cost = fits ? costs_.leaf + costs_.triangle * count : costs_.primitive * n.count;
   Costs costs;
   costs.fill(static_cast<float>(scale_ * half_area(n.bounds()) * cost));
@@ -73,23 +79,28 @@ WideCollapse::Costs WideCollapse::solve_inner(uint32_t node, const Costs& a, con
   Costs divided;                                // the cheapest of i + 1 subtrees, at least one in each child
   std::array<uint32_t, kMostChildren> first{};  // how many of them the first child gets
   for (uint32_t i = 1; i < width_; ++i) {
-    divided[i] = a[0] + b[i - 1];
-    first[i] = 1;
+    float least = a[0] + b[i - 1];
+    uint32_t gets = 1;
     for (uint32_t k = 1; k < i; ++k) {
       const float cost = a[k] + b[i - 1 - k];
-      if (cost >= divided[i]) continue;
-      divided[i] = cost;
-      first[i] = k + 1;
+      const uint32_t is_less = cost < least ? ~0U : 0;  // no branch: it would be foreseen every second time
+      least = cost < least ? cost : least;
+      gets ^= (gets ^ (k + 1)) & is_less;
     }
+    divided[i] = least;
+    first[i] = gets;
   }
   const double area = scale_ * half_area(n.bounds());
   // As an inner node, whose own children divide the full width; as a leaf if all fit.
   Costs costs;
   plan.set_first(0, first[width_ - 1]);
   costs[0] = static_cast<float>(area * costs_.node) + divided[width_ - 1];
-  if (plans_[n.first].slots() > 0 && plans_[n.first + 1].slots() > 0) {
+  const Plan &left = plans_[n.first], &right = plans_[n.first + 1];
+  if (left.slots() > 0 && right.slots() > 0) {
+    const bool is_repeated = left.is_repeated() && right.is_repeated();  // else no slot of one can be in the other
     FewSlots slots;
-    const uint32_t count = gather(node, slots, 0);
+    const uint32_t count = is_repeated ? gather(node, slots, 0) : left.slots() + right.slots();
+    if (left.is_repeated() || right.is_repeated()) plan.set_repeated();
     const auto cost = static_cast<float>(area * (costs_.leaf + costs_.triangle * count));
     if (count <= TriangleLeaf::kMost) {
       plan.set_slots(count);
@@ -143,9 +154,19 @@ uint32_t WideCollapse::children(uint32_t node, Children& children) const {
   uint32_t count = 0;
   collect(bvh_.nodes[node].first, first, children, count);
   collect(bvh_.nodes[node].first + 1, width_ - first, children, count);
-  const auto area = [&](uint32_t child) { return half_area(bvh_.nodes[child].bounds()); };
-  std::stable_sort(children.begin(), children.begin() + count,
-                   [&](uint32_t a, uint32_t b) { return area(a) > area(b); });
+  // The largest first, equal ones as they stand.
+  std::array<double, kMostChildren> areas;
+  for (uint32_t i = 0; i < count; ++i) {
+    const uint32_t child = children[i];
+    const double area = half_area(bvh_.nodes[child].bounds());
+    uint32_t place = i;
+    for (; place > 0 && areas[place - 1] < area; --place) {
+      areas[place] = areas[place - 1];
+      children[place] = children[place - 1];
+    }
+    areas[place] = area;
+    children[place] = child;
+  }
   return count;
 }
 

@@ -67,13 +67,16 @@ class WideCollapse {
     /// Triangles, if there are only such and few enough for one leaf; else 0.
     uint32_t slots() const { return word_ >> kSlotsBit & 15; }
     void set_slots(uint32_t count) { word_ |= count << kSlotsBit; }
+    /// Some of a leaf's slots stand elsewhere, too.
+    bool is_repeated() const { return (word_ & kIsRepeated) != 0; }
+    void set_repeated() { word_ |= kIsRepeated; }
     bool is_leaf() const { return (word_ & kIsLeaf) != 0; }
     void set_leaf() { word_ |= kIsLeaf; }
 
     Size size;
 
    private:
-    static constexpr uint32_t kSlotsBit = 3 * kMostChildren, kIsLeaf = 1U << 28;
+    static constexpr uint32_t kSlotsBit = 3 * kMostChildren, kIsLeaf = 1U << 28, kIsRepeated = 1U << 29;
 
     uint32_t word_ = 0;
   };
@@ -95,7 +98,8 @@ class WideCollapse {
   uint32_t most_;
   LeafUnits leaf_units_;
   const char* name_;
-  double scale_;  ///< of areas: in shares of the root's
+  bool only_triangles_ = false;  ///< in all geometries
+  double scale_;                 ///< of areas: in shares of the root's
   double cost_ = 0;
   std::vector<Plan> plans_;
   HeldBytes held_;

@@ -70,9 +70,9 @@ class Stages {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// The options of a builder or optimiser, with leaves as small as the layout needs them, and what a primitive costs in
-/// the layout where that was not given.
-OptionValues options_for(const Stage& stage, const LayoutEntry& layout, bool only_triangles) {
+/// The options of a builder or optimiser, with leaves as small as the layout needs them, and the costs of the layout
+/// where none was given.
+OptionValues options_for(const Stage& stage, const LayoutEntry& layout, const std::optional<TreeCosts>& costs) {
   OptionValues options = stage.options;
   const std::span<const OptionSpec> specs = stage.entry->options;
   const auto has = [&](std::string_view option) {
@@ -86,9 +86,12 @@ OptionValues options_for(const Stage& stage, const LayoutEntry& layout, bool onl
     }
     options.set(name, "leaf", layout.leaf_size);
   }
-  constexpr std::string_view kCost = "primitive_cost";
-  if (only_triangles && layout.triangle_cost != 1 && has(kCost) && !options.is_set(kCost)) {
-    options.set(name, kCost, layout.triangle_cost);
+  constexpr std::string_view kInner = "inner_cost", kLeaf = "leaf_cost", kPrimitive = "primitive_cost";
+  const auto is_free = [&](std::string_view option) { return has(option) && !options.is_set(option); };
+  if (costs && is_free(kInner) && is_free(kLeaf) && is_free(kPrimitive)) {
+    options.set(name, kInner, costs->inner);
+    options.set(name, kLeaf, costs->leaf);
+    options.set(name, kPrimitive, costs->primitive);
   }
   return options;
 }
@@ -201,7 +204,8 @@ void Scene::Built::make_structure(StructureInput input, std::span<const Stage> m
   const bool only_triangles = std::all_of(all.begin(), all.end(), [](const Geometry& geometry) {
     return std::holds_alternative<TriangleMesh>(geometry.shapes);
   });
-  Bvh bvh = builder.build(std::move(given), options_for(makers[0], layout, only_triangles));
+  const auto costs = only_triangles && layout.costs ? std::optional(layout.costs(layout_options)) : std::nullopt;
+  Bvh bvh = builder.build(std::move(given), options_for(makers[0], layout, costs));
   HeldBytes tree(bvh.bytes());
   input.is_split = bvh.slots.size() > kept;  // some builders split
   if (input.is_split) mark_repeated(bvh, geometries);
@@ -210,7 +214,7 @@ void Scene::Built::make_structure(StructureInput input, std::span<const Stage> m
     stages.begin(stage);
     const auto& optimiser = *std::get<const OptimiserEntry*>(stage.entry->entry);
     tree.release();
-    bvh = optimiser.optimise(std::move(bvh), options_for(stage, layout, only_triangles), input.limit);
+    bvh = optimiser.optimise(std::move(bvh), options_for(stage, layout, costs), input.limit);
     tree.set(bvh.bytes());
   }
   report.seconds.optimise = stages.lap();

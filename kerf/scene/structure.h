@@ -76,6 +76,11 @@ struct StructureStatistics {
 };
 StructureStatistics measure(const Structure& structure);
 
+/// What visits cost, by the names of the options of builders and optimisers.
+struct TreeCosts {
+  double inner, leaf, primitive;
+};
+
 /// Traces a Bvh in a way of its own.
 struct LayoutEntry {
   std::string_view name;
@@ -89,8 +94,8 @@ struct LayoutEntry {
   bool refits = false;     ///< its structures can be refitted
   /// With the Bvh that it is made from; by default a tree and its nodes once more.
   size_t bytes_per_reference = sizeof(LeafSlot) + 4 * sizeof(BvhNode);
-  /// What a triangle's test costs in its leaves, in visits of a node, as builders and optimisers are told.
-  double triangle_cost = 1;
+  /// What visits cost where there are triangles only, for the leaf decisions of builders and optimisers.
+  TreeCosts (*costs)(const OptionValues& options) = nullptr;
 };
 std::span<const LayoutEntry> layouts();
 

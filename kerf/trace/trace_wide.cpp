@@ -101,7 +101,11 @@ class Walk {
         const Node& node = nodes[child_of(current).number()];
         HWY_ALIGN float entry[kWidth];
         const uint32_t entered = boxes.enter(node, limit, entry);
-        current = entered != 0 ? nearest_of(node, entry, entered, top) : next(top, limit);
+        if (entered == 0) {
+          current = next(top, limit);
+        } else {
+          current = kAny ? largest_of(node, entry, entered, top) : nearest_of(node, entry, entered, top);
+        }
       }
       const Child leaf = child_of(current);
       if (leaf.kind() == Child::kEnd) return;
@@ -163,28 +167,63 @@ class Walk {
   }
 
   /// Puts all children that are entered on top but the one to go on with, which it returns: the nearest, and below it
-  /// the others in order; for any hit the largest, which stands first.
+  /// the others in order. What is compared decides no branch: it would be mispredicted every other time.
   static HWY_INLINE uint64_t nearest_of(const Node& node, const float* entry, uint32_t entered, uint64_t*& top) {
-    const uint64_t first = take(node, entry, entered);
-    if (entered == 0) return first;
-    const uint64_t second = take(node, entry, entered);
-    if constexpr (kAny) {
-      for (; entered != 0; ++top) *top = take_last(node, entry, entered);
-      *top++ = second;
-      return first;
-    }
+    uint64_t a = take(node, entry, entered);
+    if (entered == 0) return a;
+    uint64_t b = take(node, entry, entered);
+    order(b, a);
     if (entered == 0) {
-      *top++ = std::max(first, second);
-      return std::min(first, second);
+      *top++ = b;
+      return a;
     }
+    uint64_t c = take(node, entry, entered);
+    if (entered == 0) {
+      order(c, a);
+      order(c, b);
+      *top++ = c;
+      *top++ = b;
+      return a;
+    }
+    uint64_t d = take(node, entry, entered);
+    order(d, c);
+    order(d, b);
+    order(c, a);
+    order(c, b);
     uint64_t* const base = top;
-    *top++ = first;
-    *top++ = second;
+    *top++ = d;
+    *top++ = c;
+    *top++ = b;
+    if (entered == 0) return a;
+    *top++ = a;
     do {
       *top++ = take(node, entry, entered);
     } while (entered != 0);
     sort(base, top);
     return *--top;
+  }
+
+  /// The same where any hit is enough: the largest, which stands first, then the second and so on.
+  static HWY_INLINE uint64_t largest_of(const Node& node, const float* entry, uint32_t entered, uint64_t*& top) {
+    const uint64_t first = take(node, entry, entered);
+    if (entered == 0) return first;
+    const uint64_t second = take(node, entry, entered);
+    if (entered != 0) {
+      const auto others = static_cast<uint32_t>(std::popcount(entered));
+      top[0] = take_last(node, entry, entered);
+      top[1] = take_last(node, entry, entered |= 1);  // some child if there is no other; it is not kept
+      for (uint32_t i = 2; i < others; ++i) top[i] = take_last(node, entry, entered);
+      top += others;
+    }
+    *top++ = second;
+    return first;
+  }
+
+  /// The greater one first.
+  static HWY_INLINE void order(uint64_t& first, uint64_t& second) {
+    const uint64_t change = (first ^ second) & (uint64_t{0} - uint64_t{first < second});
+    first ^= change;
+    second ^= change;
   }
 
   static HWY_INLINE uint64_t take(const Node& node, const float* entry, uint32_t& entered) {

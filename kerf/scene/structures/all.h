@@ -69,9 +69,11 @@ inline constexpr size_t kWideBytes = sizeof(LeafSlot) + 2 * (sizeof(BvhNode) + W
                                      TriangleLeaf::units(1) * sizeof(LeafUnit) + sizeof(WideNode<kWidth>);
 inline constexpr std::string_view kWideSource =
     "Ylitie, Karras, Laine: Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, 2017, section 3.1";
-/// Four at once cost about as much as a node. A truth about the leaves' insides only: smaller leaves than of four are
-/// joined in the end nearly everywhere, and a binary tree that need not be finer is built and changed much faster.
-inline constexpr double kWideTriangleCost = 0.25;
+/// Where two leaves are dearer than one so are they in a wide tree, and a binary one that is not needlessly fine is
+/// built and changed faster. What inner nodes cost only the collapse knows.
+inline TreeCosts wide_tree_costs(const OptionValues& options) {
+  return {0, options["leaf_cost"], std::max(options["triangle_cost"], 1e-6)};
+}
 inline constexpr LayoutEntry kBvh4Layout = {
     "bvh4",
     "nodes of up to four children, tested at once, and leaves of up to eight triangles, tested four at once",
@@ -82,7 +84,7 @@ inline constexpr LayoutEntry kBvh4Layout = {
     true,
     true,
     kWideBytes<4>,
-    kWideTriangleCost};
+    wide_tree_costs};
 inline constexpr LayoutEntry kBvh8Layout = {
     "bvh8",
     "nodes of up to eight children, tested at once, and leaves of up to eight triangles, tested at once",
@@ -93,7 +95,7 @@ inline constexpr LayoutEntry kBvh8Layout = {
     true,
     true,
     kWideBytes<8>,
-    kWideTriangleCost};
+    wide_tree_costs};
 
 std::unique_ptr<Structure> make_quantised_bvh8_structure(Bvh bvh, const StructureInput& input,
                                                          const OptionValues& options);
@@ -110,7 +112,7 @@ inline constexpr LayoutEntry kQuantisedBvh8Layout = {
     true,
     true,
     kQuantisedBytes,
-    kWideTriangleCost};
+    wide_tree_costs};
 
 std::unique_ptr<Structure> make_late_split_structure(Bvh bvh, const StructureInput& input, const OptionValues& options);
 inline constexpr OptionSpec kLateSplitOptions[] = {

@@ -1,0 +1,12 @@
+# GoogleTest from the sources that Debian's googletest has.
+foreach(name gtest gtest_main)
+  set(source ${name})
+  if(name STREQUAL "gtest")
+    set(source gtest-all)
+  endif()
+  add_library(kerf_${name} STATIC ${KERF_GTEST_SOURCES}/src/${source}.cc)
+  target_include_directories(kerf_${name} SYSTEM PUBLIC ${KERF_GTEST_SOURCES}/include PRIVATE ${KERF_GTEST_SOURCES})
+  add_library(GTest::${name} ALIAS kerf_${name})
+endforeach()
+target_link_libraries(kerf_gtest_main PUBLIC kerf_gtest)
+target_link_libraries(kerf_gtest PUBLIC Threads::Threads)
