@@ -103,7 +103,7 @@ TEST_P(BatchOf, RaysCountsAreThoseOfItsRays) {
 
 class BatchThroughWideTrees : public testing::TestWithParam<std::string> {};
 
-INSTANTIATE_TEST_SUITE_P(Menu, BatchThroughWideTrees, testing::Values("bvh4", "bvh8"),
+INSTANTIATE_TEST_SUITE_P(Menu, BatchThroughWideTrees, testing::Values("bvh4", "bvh8", "quantised_bvh8"),
                          [](const auto& entry) { return entry.param; });
 
 TEST_P(BatchThroughWideTrees, MayBeOfAnyLength) {

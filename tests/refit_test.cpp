@@ -168,8 +168,10 @@ TEST(Refit, EveryTreeHitsWhatBruteForceHitsHoweverThingsMove) {
 }
 
 TEST(Refit, AnySizeFromDenormalToHuge) {
-  const std::vector<std::string> some = {"binned_sah", "early_split(budget=3)+binned_sah", "spatial_split",
-                                         "early_split(budget=3)+binned_sah+bvh8", "spatial_split+bvh4"};
+  const std::vector<std::string> some = {"binned_sah",         "early_split(budget=3)+binned_sah",
+                                         "spatial_split",      "early_split(budget=3)+binned_sah+bvh8",
+                                         "spatial_split+bvh4", "early_split(budget=3)+binned_sah+quantised_bvh8",
+                                         "lbvh+quantised_bvh8"};
   for (const float size : {1e-40F, 1e-30F, 1e-10F, 1e5F, 1e20F, 1e22F}) {
     check_moves(random_things(150, 2, size), size, some, 20);
   }
@@ -184,7 +186,8 @@ TEST(Refit, NeedlesFarFromTheOriginCutIntoMany) {
   }
   check_moves(needles, 10,
               {"early_split(budget=16)+binned_sah", "early_split(budget=16)+lbvh+skip_pointer",
-               "early_split(budget=16)+binned_sah+bvh8", "early_split(budget=16)+lbvh+bvh4"},
+               "early_split(budget=16)+binned_sah+bvh8", "early_split(budget=16)+lbvh+bvh4",
+               "early_split(budget=16)+binned_sah+quantised_bvh8"},
               50);
 }
 
@@ -192,7 +195,8 @@ TEST(Refit, ThingsInOnePlace) {
   MovingThings heap;
   for (uint32_t i = 0; i < kManyCoincident; ++i) heap.add({{0, 0, 1}, {1, 0, 1}, {0, 1, 1}});
   for (const std::string structure :
-       {"binned_sah", "early_split(budget=2)+ploc", "early_split(budget=2)+binned_sah+bvh8"}) {
+       {"binned_sah", "early_split(budget=2)+ploc", "early_split(budget=2)+binned_sah+bvh8",
+        "early_split(budget=2)+binned_sah+quantised_bvh8"}) {
     Scene scene = scene_of(heap, {.structure = structure, .refittable = true});
     const MovingThings moved = heap.moved([](Vec3f p) { return p + Vec3f{0, 0, 4}; });
     scene.refit(moved.geometries());
@@ -240,7 +244,7 @@ TEST(Refit, AnyNumberOfThreadsMakesTheSameTree) {
   const MovingThings moved = things.moved([](Vec3f p) { return twisted(p, 0.1F); });
   const std::vector<Geometry> geometries = moved.geometries();
   for (const std::string structure : {"early_split(budget=2)+binned_sah", "lbvh+skip_pointer", "spatial_split+packets",
-                                      "early_split(budget=2)+binned_sah+bvh8", "lbvh+bvh4"}) {
+                                      "early_split(budget=2)+binned_sah+bvh8", "lbvh+bvh4", "lbvh+quantised_bvh8"}) {
     Scene scene = scene_of(things, {.structure = structure, .refittable = true});
     const RefitReport one = scene.refit(geometries, 1);
     const uint64_t hash = scene.structure().hash();

@@ -84,7 +84,8 @@ double most_below(const QuantisedNode& node, uint32_t axis, uint32_t steps) {
   return std::min<double>(exact_side(node, axis, steps), node.side_at(axis, steps));
 }
 
-/// Between what numbers the box of what a node holds begins and ends along an axis, as far as its children's steps tell.
+/// Between what numbers the box of what a node holds begins and ends along an axis, as far as its children's steps
+/// tell.
 struct Ends {
   double lower_least = Box3f::kInfinity, lower_most = Box3f::kInfinity;
   double upper_least = -Box3f::kInfinity, upper_most = -Box3f::kInfinity;

@@ -22,9 +22,7 @@ struct QuantisedChild {
 
   uint32_t word = 0;
 
-  static QuantisedChild of(uint32_t kind, size_t number) {
-    return {static_cast<uint32_t>(number) << kKindBits | kind};
-  }
+  static QuantisedChild of(uint32_t kind, size_t number) { return {static_cast<uint32_t>(number) << kKindBits | kind}; }
   uint32_t kind() const { return word & ((1U << kKindBits) - 1); }
   uint32_t number() const { return word >> kKindBits; }
   bool is_leaf() const { return kind() != kInner; }
@@ -106,8 +104,8 @@ QuantisedBvh make_quantised_bvh(const Bvh& bvh, std::span<const Geometry> geomet
                                 CornerKind kind = CornerKind::places, LeafNumbers* numbers = nullptr);
 
 /// What is wrong with it, if anything: a side that is not where its child's box ends, a primitive that has one slot and
-/// reaches out of a box above it, steps larger than they need be, a node or leaf reached twice or never or out of order,
-/// a path longer than kMaxDepth, a gap between children, a leaf whose triangles are not the caller's.
+/// reaches out of a box above it, steps larger than they need be, a node or leaf reached twice or never or out of
+/// order, a path longer than kMaxDepth, a gap between children, a leaf whose triangles are not the caller's.
 std::optional<std::string> find_fault(const QuantisedBvh& layout, std::span<const Geometry> geometries);
 
 /// Equal for equal trees, whatever the machine.

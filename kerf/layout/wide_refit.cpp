@@ -74,8 +74,7 @@ class Refit {
   using Child = typename Layout::Child;
   static constexpr uint32_t kChildren = Layout::kChildren;
 
-  Refit(Layout& layout, const LeafNumbers& numbers, const Fragments& fragments,
-        std::span<const Geometry> geometries)
+  Refit(Layout& layout, const LeafNumbers& numbers, const Fragments& fragments, std::span<const Geometry> geometries)
       : layout_(layout), numbers_(numbers), fragments_(fragments), geometries_(geometries) {}
 
   RefitOutcome run() {

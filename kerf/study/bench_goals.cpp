@@ -15,6 +15,7 @@
 namespace kerf {
 namespace {
 
+constexpr std::string_view kQuantised = "quantised_";
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 constexpr double kLeastSingle = 1.25, kLeastOfAnyScene = 0.9, kLeastBesideRobust = 2;
@@ -262,19 +263,30 @@ class Judge {
                         single_ + ", of HIGH's");
   }
 
-  /// Of rows of the judged preset.
+  /// The judged row, or where that is of a quantised layout the one that this is the small form of.
+  std::string full_form() const {
+    const size_t at = single_.find(kQuantised);
+    return at == std::string::npos ? single_ : std::string(single_).erase(at, kQuantised.size());
+  }
+  /// As another row, but the layout "quantised_", or with something behind its name.
+  static bool is_small_form(const std::string& name, const std::string& full) {
+    if (full.empty() || name == full) return false;
+    return name.starts_with(full) || name == std::string(full).insert(full.rfind(' ') + 1, kQuantised);
+  }
+
+  /// A row of the judged preset with a small form of the judged one's layout.
   Finding bytes_quantised() const {
     Scenes asked;
     for (const BenchScene& scene : alone_) {
       if (scene.name.starts_with("sanmiguel") || scene.name.starts_with("tower_bridge")) asked.push_back(scene);
     }
     if (asked.empty()) return not_measured("neither sanmiguel nor tower_bridge was measured with one thread");
-    const double full = overall_ratio(asked, single_, Feed::loop);
+    const std::string full_name = full_form();
+    const double full = overall_ratio(asked, full_name, Feed::loop);
     bool at_60 = false, at_50 = false;
     std::string text;
     for (const std::string& name : kerf_rows(asked, "")) {
-      const auto preset_of = [](const std::string& row) { return row.substr(0, row.rfind(' ')); };
-      if (preset_of(name) != preset_of(single_) || name.find(" quantised_") == std::string::npos) continue;
+      if (!is_small_form(name, full_name)) continue;
       const Column share = column_of(asked, [&](const BenchScene& scene) { return bytes_share(scene, name); });
       const double speed = overall_ratio(asked, name, Feed::loop) / full;
       if (share.missing() > 0 || std::isnan(speed)) continue;

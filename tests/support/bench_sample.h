@@ -56,7 +56,7 @@ inline BenchScene made_bench_scene(const std::string& name = "sanmiguel") {
   add_bench_row(scene, BenchEngine::kerf, "balanced", 1.0, 0.35);
   add_bench_row(scene, BenchEngine::kerf, "fast", 2.0, 0.15);
   BenchRow& small = add_bench_row(scene, BenchEngine::kerf, "best", 0.75, 0.9);
-  small.layout = "bvh8_small";
+  small.layout = "quantised_bvh8";
   small.bytes = 50000;
   BenchRow& high = add_bench_row(scene, BenchEngine::embree, "high", 1.0, 1.0);
   add_bench_feed(high, Feed::sorted, 0.8);

@@ -104,7 +104,7 @@ inline constexpr size_t kQuantisedBytes = sizeof(LeafSlot) + 2 * (sizeof(BvhNode
                                           QuantisedLeaf::units(1, 3, true) * sizeof(LeafUnit) + sizeof(QuantisedNode);
 inline constexpr LayoutEntry kQuantisedBvh8Layout = {
     "quantised_bvh8",
-    "bvh8 in about half the memory: the sides of boxes in bytes, and triangles in a leaf share their corners",
+    "bvh8 in about half the memory: boxes in ten bits a side, and the triangles of a leaf share their corners",
     "Ylitie, Karras, Laine: Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs, 2017",
     kWideOptions,
     QuantisedLeaf::kMost,
