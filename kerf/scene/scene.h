@@ -72,9 +72,9 @@ struct BuildReport {
 ///
 /// The scene looks at the caller's memory: vertices and indices must stay unchanged until the next build, refit or the
 /// scene's end, though some layouts (bvh4, bvh8, quantised_bvh8) trace copies of triangles. Queries are const and may
-/// come from any number of threads. Their outcome depends on neither the structure, the instruction set, the number of threads nor
-/// the caller's floating-point mode; among equally near primitives the one with the smaller geometry, then primitive
-/// number is hit.
+/// come from any number of threads. Their outcome depends on neither the structure, the instruction set, the number of
+/// threads nor the caller's floating-point mode; among equally near primitives the one with the smaller geometry, then
+/// primitive number is hit.
 class Scene {
  public:
   Scene();
