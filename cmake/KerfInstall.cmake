@@ -11,11 +11,13 @@ function(kerf_install target set)
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   install(EXPORT ${set} NAMESPACE kerf:: DESTINATION ${KERF_CMAKE_DIR})
   foreach(folder ${ARGN})
-    # simd.h is for the library's own kernels: it needs Highway's headers, which users of Kerf need not have; as the two
-    # about Embree need Embree's.
+    # simd.h and the parts of kernels are the library's own: they need Highway's headers, which users of Kerf need not
+    # have; as the two about Embree need Embree's.
     # The folders within kerf/io are the insides of its readers, kerf/study/report those of the page.
     install(DIRECTORY kerf/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kerf FILES_MATCHING PATTERN "*.h"
-      PATTERN simd.h EXCLUDE PATTERN wide_stream.h EXCLUDE PATTERN embree_calls.h EXCLUDE PATTERN embree_pass.h EXCLUDE
+      PATTERN simd.h EXCLUDE PATTERN wide_boxes.h EXCLUDE PATTERN quantised_boxes.h EXCLUDE PATTERN leaf_tests.h EXCLUDE
+      PATTERN exact_test.h EXCLUDE PATTERN wide_stream.h EXCLUDE
+      PATTERN embree_calls.h EXCLUDE PATTERN embree_pass.h EXCLUDE
       REGEX "kerf/(io/[a-z]+|study/report)$" EXCLUDE)
   endforeach()
 endfunction()
