@@ -1,5 +1,5 @@
-// kerf_bench_watertight_nodes: the walk through a bvh8, once as it is, with boxes enlarged by constants of the ray, and
-// once with the plain slab test, which keeps one offset for each axis and may miss boxes. Leaves are visited but not
+// kerf_bench_watertight_nodes: the walk through a bvh8, once as it is, with constants of the ray that enlarge boxes,
+// and once with the plain slab test, which has one inverse for each axis and may miss boxes. Leaves are visited but not
 // tested, so that both go all the way. To be run by watertight_nodes.sh, which counts the instructions.
 
 #include <cinttypes>
@@ -32,16 +32,16 @@ struct PlainBoxTests {
   using V = hn::Vec<Lanes>;
   static_assert(hn::MaxLanes(Lanes()) == kWidth);
 
-  V inverse_x, inverse_y, inverse_z, offset_x, offset_y, offset_z, t_min;
+  V inverse_x, inverse_y, inverse_z, origin_x, origin_y, origin_z, t_min;
   uint32_t row_x, row_y, row_z;
 
   explicit PlainBoxTests(const WideRay& ray)
       : inverse_x(all(ray.inverse[0])),
         inverse_y(all(ray.inverse[1])),
         inverse_z(all(ray.inverse[2])),
-        offset_x(all(-ray.origin[0] * ray.inverse[0])),
-        offset_y(all(-ray.origin[1] * ray.inverse[1])),
-        offset_z(all(-ray.origin[2] * ray.inverse[2])),
+        origin_x(all(ray.origin[0])),
+        origin_y(all(ray.origin[1])),
+        origin_z(all(ray.origin[2])),
         t_min(all(ray.t_min)),
         row_x(ray.row(0, kWidth)),
         row_y(ray.row(1, kWidth)),
@@ -50,12 +50,12 @@ struct PlainBoxTests {
   HWY_INLINE uint32_t enter(const WideNode<kWidth>& node, float limit, float* entry) const {
     const Lanes d;
     const float* const sides = &node.sides[0][0][0];
-    const auto x0 = hn::MulAdd(hn::Load(d, sides + row_x), inverse_x, offset_x);
-    const auto x1 = hn::MulAdd(hn::Load(d, sides + (row_x ^ kWidth)), inverse_x, offset_x);
-    const auto y0 = hn::MulAdd(hn::Load(d, sides + row_y), inverse_y, offset_y);
-    const auto y1 = hn::MulAdd(hn::Load(d, sides + (row_y ^ kWidth)), inverse_y, offset_y);
-    const auto z0 = hn::MulAdd(hn::Load(d, sides + row_z), inverse_z, offset_z);
-    const auto z1 = hn::MulAdd(hn::Load(d, sides + (row_z ^ kWidth)), inverse_z, offset_z);
+    const auto x0 = at(sides + row_x, origin_x, inverse_x);
+    const auto x1 = at(sides + (row_x ^ kWidth), origin_x, inverse_x);
+    const auto y0 = at(sides + row_y, origin_y, inverse_y);
+    const auto y1 = at(sides + (row_y ^ kWidth), origin_y, inverse_y);
+    const auto z0 = at(sides + row_z, origin_z, inverse_z);
+    const auto z1 = at(sides + (row_z ^ kWidth), origin_z, inverse_z);
     const auto near = hn::Max(hn::Max(x0, y0), hn::Max(z0, t_min));
     const auto far = hn::Min(hn::Min(x1, y1), hn::Min(z1, hn::Set(d, limit)));
     hn::Store(near, d, entry);
@@ -64,6 +64,9 @@ struct PlainBoxTests {
 
  private:
   static HWY_INLINE V all(float value) { return hn::Set(Lanes(), value); }
+  static HWY_INLINE V at(const float* sides, V origin, V inverse) {
+    return hn::Mul(hn::Sub(hn::Load(Lanes(), sides), origin), inverse);
+  }
 };
 
 struct WatertightTree : WideTree<8> {
@@ -122,7 +125,7 @@ int run() {
     const Ray ray{.origin = 10.0F * random.vector(), .direction = random.vector()};
     rays.rays.push_back(ray);
     rays.wide.emplace_back(ray, tracer.largest_coordinate);
-    if (!rays.wide.back().is_fused) return 1;
+    if (!rays.wide.back().is_usual) return 1;
   }
   TraceCounts watertight, plain;
   walk<WatertightTree>(tracer, rays, tracer.layout.root, watertight);

@@ -45,7 +45,7 @@ class StreamMemory {
   const WideRay& make_ray(size_t i, const Ray& from, float largest_coordinate) {
     const auto* made = new (&parts_->hits[i * sizeof(StreamHit)]) StreamHit(from, largest_coordinate);
     const WideRay& wide = made->wide;
-    parts_->rays[i] = {from.t_min, from.t_max, wide.inverse, wide.near_offset, wide.far_offset};
+    parts_->rays[i] = {from.t_min, from.t_max, wide.inverse, wide.near_offset(), wide.far_offset()};
     return wide;
   }
   StreamRay* rays() { return parts_->rays; }

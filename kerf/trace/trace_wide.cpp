@@ -54,8 +54,8 @@ struct WideTree {
   using Node = WideNode<kWidth>;
   using Child = WideChild;
   using Leaf = TriangleLeaf;
-  template <bool kFused>
-  using Boxes = BoxTests<kWidth, kFused>;
+  template <bool kUsual>
+  using Boxes = BoxTests<kWidth, kUsual>;
   using Leaves = LeafTests;
   using Sides = WideSides<kWidth>;
 };
@@ -65,14 +65,14 @@ struct QuantisedTree {
   using Node = QuantisedNode;
   using Child = QuantisedChild;
   using Leaf = QuantisedLeaf;
-  template <bool kFused>
-  using Boxes = QuantisedBoxTests<kFused>;
+  template <bool kUsual>
+  using Boxes = QuantisedBoxTests<kUsual>;
   using Leaves = QuantisedLeafTests;
   using Sides = QuantisedSides;
 };
 
 /// A ray on its way through such a tree.
-template <class Tree, bool kFused, bool kAny, class Counts>
+template <class Tree, bool kUsual, bool kAny, class Counts>
 class Walk {
   static constexpr uint32_t kWidth = Tree::kWidth;
   using Tracer = WideTracer<typename Tree::Layout>;
@@ -91,7 +91,7 @@ class Walk {
     uint64_t* top = waiting;
     *top++ = key({Child::kEnd}, -std::numeric_limits<float>::infinity());
     const Node* const nodes = tracer_.layout.nodes.data();
-    const typename Tree::template Boxes<kFused> boxes(wide_);
+    const typename Tree::template Boxes<kUsual> boxes(wide_);
     uint64_t current = key(from, ray_.t_min);
     float limit = nearest_.hit.t;
     while (true) {
@@ -327,7 +327,7 @@ struct Kernel {
       if (!wide.enters(tracer.layout.bounds)) return {};
     }
     NearestHit nearest(wide.t_max);
-    if (wide.is_fused) {
+    if (wide.is_usual) {
       Walk<Tree, true, kAny, Counts>(tracer, ray, wide, nearest, counts).run(tracer.layout.root);
     } else {
       Walk<Tree, false, kAny, Counts>(tracer, ray, wide, nearest, counts).run(tracer.layout.root);

@@ -12,26 +12,33 @@ namespace kerf {
 /// What the kernels of a WideBvh need of a ray, without branches that would be mispredicted: a ray has few nodes to pay
 /// for them.
 ///
-/// Boxes: at a side b the parameter is b * inverse + offset, one fused operation. In position, with e = 2^-24, M the
-/// distance from the origin to the scene's farthest side and o the origin's largest coordinate: inverse, the roundings
-/// of offset and that of the sum are off by e M, 2 e o and e M; without fused operations that of the product by e (M +
-/// o) more; a hit's t by e M. With C the scene's largest coordinate M is at most C + o, so the sides are moved by 16 e
-/// (C
-/// + 2 o), towards the outside of boxes, which come out larger by more than any error (the idea: Woop, Benthin, Wald
-/// 2013, section 4). A direction component below 2^-30 of the largest is taken to be as large as that: on the way
-/// through the scene the ray moves by less than 2^-29 M along it, which the same shift covers.
+/// Boxes of a WideBvh: at a side b the parameter is (b - origin) * inverse, whose error is a share of itself: 4 e, e =
+/// 2^-24, with the roundings of the difference, of inverse, of its change and of the product. So inverse is made
+/// smaller by 8 e for the near sides and larger for the far ones (the idea: Ize, Robust BVH Ray Traversal, 2013), and
+/// where a ray leaves a surface, boxes that end there are not entered again, as they would be if boxes were enlarged. A
+/// direction component below 2^-30 of the largest is taken to be as large as that: on the way through the scene the ray
+/// moves by less than 2^-29 M along it, M being the distance from the origin to the scene's farthest side; along such
+/// an axis the origin is moved by 2^-20 of what M is at most, so that boxes come out larger.
+///
+/// Boxes in steps, and those of batches: the parameter is b * inverse + offset, one fused operation. In position, with
+/// o the origin's largest coordinate: inverse, the roundings of offset and that of the sum are off by e M, 2 e o and e
+/// M; a hit's t by e M. With C the scene's largest coordinate M is at most C + o, so the sides are moved by 16 e (C + 2
+/// o), towards the outside of boxes, which covers what was said of small components too (the idea: Woop, Benthin, Wald
+/// 2013, section 4).
 ///
 /// Triangles: the shear of PreparedRay in float, from one more rounding; see detail::may_hit_triangle().
 struct WideRay {
-  Float4 inverse, near_offset, far_offset;
-  Float4 origin, shear;
+  Float4 inverse, inverse_near, inverse_far;  ///< the latter two: for the near and far sides of boxes
+  Float4 origin, origin_near, origin_far;     ///< likewise
+  Float4 shear;
   uint32_t octant;      ///< a bit for each axis: 1 if boxes are entered at their upper side, else 0
   uint32_t kx, ky, kz;  ///< as in PreparedRay
   float t_min, t_max;
   float shift;  ///< of sides, in position
-  /// False where numbers are too large or too small for that: then (b - origin) * inverse is, which takes two
-  /// operations and cannot go wrong, whatever the size.
-  bool is_fused;
+  float t_off;  ///< by which boxes are entered earlier and left later, besides
+  /// False where numbers are too large or too small for that, or t may be negative: then (b - origin_far_moved()) *
+  /// inverse is for the far sides and likewise for the near ones, which cannot go wrong, whatever the size.
+  bool is_usual;
   bool valid;  ///< as in PreparedRay
 
   /// `largest_coordinate`: of the scene's bounds.
@@ -53,35 +60,43 @@ struct WideRay {
     const float reach = largest_coordinate + 2 * farthest;
     shift = std::max(0x1p-20F * reach, 0x1p-148F);
     const float least = 0x1p-30F * longest;
-    is_fused = reach >= 0x1p-60F && reach < 0x1p60F * least && longest <= 0x1p50F;
+    is_usual = reach >= 0x1p-60F && reach < 0x1p60F * least && longest <= 0x1p50F && t_min >= 0;
     // Not a choice of two: the division would have to wait for it.
     const auto invert = [&](float smallest) { inverse = 1 / with_signs(max(sizes, zero + smallest), d); };
     invert(least);
-    if (!is_fused) [[unlikely]]
+    if (!is_usual) [[unlikely]]
       invert(kLeastInverted);
-    const Float4 moved = origin * inverse, shifts = absolute(inverse) * shift;
-    near_offset = -(moved + shifts);
-    far_offset = shifts - moved;
+    inverse_near = inverse * (1 - 0x1p-21F);
+    inverse_far = inverse * (1 + 0x1p-21F);
+    const Float4 moved = sizes < least ? with_signs(zero + shift, d) : zero;
+    origin_near = origin + moved;
+    origin_far = origin - moved;
     shear = d * inverse[kz];
+    t_off = 0x1p-24F * reach * std::abs(inverse[kz]);
     octant = (ray.direction.x < 0 ? 1U : 0U) | (ray.direction.y < 0 ? 2U : 0U) | (ray.direction.z < 0 ? 4U : 0U);
   }
 
   /// Where the near sides of an axis begin in [axis][upper][width]; the far ones begin at that ^ width.
   uint32_t row(uint32_t axis, uint32_t width) const { return (2 * axis + (octant >> axis & 1)) * width; }
 
-  /// Moved so that near sides come out nearer; far sides take the other one.
-  float origin_near(uint32_t axis) const { return origin[axis] + std::copysign(shift, inverse[axis]); }
-  float origin_far(uint32_t axis) const { return origin[axis] - std::copysign(shift, inverse[axis]); }
+  /// What is added to b * inverse.
+  Float4 near_offset() const { return -(origin * inverse + absolute(inverse) * shift); }
+  Float4 far_offset() const { return absolute(inverse) * shift - origin * inverse; }
+
+  /// Moved by the whole shift, so that near sides come out nearer; far sides take the other one.
+  Float4 origin_near_moved() const { return origin + with_signs(Float4{} + shift, inverse); }
+  Float4 origin_far_moved() const { return origin - with_signs(Float4{} + shift, inverse); }
 
   /// Whether the ray enters a box, the root's, within [t_min, t_max].
   bool enters(const Box3f& box) const {
+    const Float4 nears = origin_near_moved(), fars = origin_far_moved();
     float near = t_min, far = t_max;
     for (uint32_t axis = 0; axis < 3; ++axis) {
       const bool is_upper = (octant >> axis & 1) != 0;
       const float entry = is_upper ? box.upper[axis] : box.lower[axis],
                   exit = is_upper ? box.lower[axis] : box.upper[axis];
-      near = std::max(near, (entry - origin_near(axis)) * inverse[axis]);
-      far = std::min(far, (exit - origin_far(axis)) * inverse[axis]);
+      near = std::max(near, (entry - nears[axis]) * inverse[axis]);
+      far = std::min(far, (exit - fars[axis]) * inverse[axis]);
     }
     return near <= far;
   }

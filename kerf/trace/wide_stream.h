@@ -229,7 +229,7 @@ void trace_some(const WideTracer<typename Tree::Layout>& tracer, std::span<const
   for (size_t i = 0; i < rays.size(); ++i) {
     const WideRay& ray = memory.make_ray(i, rays[i], tracer.largest_coordinate);
     uint8_t octant = kOut;
-    if (ray.valid && !ray.is_fused) {
+    if (ray.valid && !ray.is_usual) {
       results[i] = result_of<Result>(single(rays[i]));
     } else if (ray.valid && ray.enters(tracer.layout.bounds)) {
       octant = static_cast<uint8_t>(ray.octant);
