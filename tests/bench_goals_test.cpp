@@ -75,7 +75,8 @@ TEST(BenchRatios, AreGeometricMeansOverScenes) {
   EXPECT_TRUE(std::isnan(mean_ratio(scenes, "kerf best bvh8", Feed::loop, "loaded")));
   EXPECT_EQ(judged_row(scenes, Feed::loop), "kerf best bvh8");
   set_seconds(bench_row_of(scenes[0], kKerf, "best"), Feed::loop, 1);
-  EXPECT_EQ(judged_row(scenes, Feed::loop), "kerf best quantised_bvh8") << "one row for all scenes, whose mean is greatest";
+  EXPECT_EQ(judged_row(scenes, Feed::loop), "kerf best quantised_bvh8")
+      << "one row for all scenes, whose mean is greatest";
   bench_row_of(scenes[1], kKerf, "best").finished = false;
   EXPECT_TRUE(std::isnan(mean_ratio(scenes, "kerf best bvh8", Feed::loop, "diffuse")));
 }
