@@ -6,12 +6,14 @@
 #include <atomic>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "kerf/scene/menu.h"
 #include "kerf/scene/pipeline.h"
 #include "kerf/scene/scene.h"
 #include "tests/support/error_of.h"
+#include "tests/support/hand_tree.h"
 #include "tests/support/random.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/sizes.h"
@@ -58,6 +60,49 @@ std::vector<Ray> mixed_rays(size_t count, uint32_t seed = 7) {
     rays.push_back(ray);
   }
   return rays;
+}
+
+/// Nodes to be looked at, and nothing to trace rays through.
+class NodesAlone : public Structure {
+ public:
+  explicit NodesAlone(std::vector<NodeView> nodes) : nodes_(std::move(nodes)) {}
+
+  const TraceTable& table() const override { return table_; }
+  const void* data() const override { return nullptr; }
+  size_t bytes() const override { return 0; }
+  uint64_t hash() const override { return 0; }
+  std::optional<std::string> find_fault() const override { return std::nullopt; }
+  void visit_nodes(const std::function<void(const NodeView&)>& visit) const override {
+    for (const NodeView& node : nodes_) visit(node);
+  }
+
+ private:
+  std::vector<NodeView> nodes_;
+  TraceTable table_{};
+};
+
+TEST(OuterFaults, TheFirstIsTold) {
+  HandScene scene;
+  scene.add(1);
+  const LeafSlot slot{0, 0};
+  const NodeView root{.bounds = inner_node(0, 2, 0).bounds()};
+  const NodeView leaf{.bounds = leaf_node(1, 0).bounds(), .depth = 1, .is_leaf = true, .slots = {&slot, 1}};
+  NodeView deeper = leaf, outside = leaf, cut = leaf;
+  deeper.depth = 3;
+  outside.bounds.upper.x = 3;
+  cut.bounds.upper.y = 0.5F;
+  const auto fault_of = [&](std::vector<NodeView> nodes) {
+    return find_outer_fault(NodesAlone(std::move(nodes)), scene.geometries()).value_or("none");
+  };
+  const std::string jumps = "a node's depth jumps", is_outside = "a child outside its parent's box";
+  EXPECT_EQ(fault_of({root, leaf}), "none");
+  EXPECT_EQ(fault_of({root, leaf, deeper}), jumps);
+  EXPECT_EQ(fault_of({root, leaf, outside}), is_outside);
+  EXPECT_EQ(fault_of({root, deeper, leaf, outside}), jumps);
+  EXPECT_EQ(fault_of({root, outside, leaf, deeper}), is_outside);
+  EXPECT_EQ(fault_of({leaf}), jumps);
+  EXPECT_EQ(fault_of({root}), "geometry 0, primitive 0 is in no leaf");
+  EXPECT_EQ(fault_of({root, cut}), "geometry 0, primitive 0 reaches out of the leaves that have it");
 }
 
 class EveryStructure : public testing::TestWithParam<std::string> {};

@@ -49,20 +49,22 @@ bool is_inside(const Box3f& box, Vec3d p, double slack) {
 
 }  // namespace
 
-std::optional<std::string> find_outer_fault(const Scene& scene) {
+std::optional<std::string> find_outer_fault(const Structure& structure, std::span<const Geometry> geometries) {
   std::optional<std::string> fault;
   std::vector<Box3f> path;
   Places places;
-  scene.structure().visit_nodes([&](const NodeView& node) {
-    if (node.depth > path.size()) fault = "a node's depth jumps";
+  structure.visit_nodes([&](const NodeView& node) {
     if (fault) return;
+    if (node.depth > path.size()) {
+      fault = "a node's depth jumps";
+      return;
+    }
     path.resize(node.depth);
     if (!path.empty() && !path.back().contains(node.bounds)) fault = "a child outside its parent's box";
     path.push_back(node.bounds);
     for (const LeafSlot& slot : node.slots) places[{slot.geometry(), slot.primitive}].push_back(node.bounds);
   });
   if (fault) return fault;
-  const std::span<const Geometry> geometries = scene.geometries();
   for (uint32_t g = 0; g < geometries.size(); ++g) {
     for (uint32_t p = 0; p < primitive_count(geometries[g]); ++p) {
       if (find_defect(geometries[g], p) != Defect::none || is_degenerate(geometries[g], p)) continue;
@@ -80,6 +82,10 @@ std::optional<std::string> find_outer_fault(const Scene& scene) {
     }
   }
   return std::nullopt;
+}
+
+std::optional<std::string> find_outer_fault(const Scene& scene) {
+  return find_outer_fault(scene.structure(), scene.geometries());
 }
 
 }  // namespace kerf::test
