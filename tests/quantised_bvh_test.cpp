@@ -10,7 +10,6 @@
 
 #include "kerf/base/instruction_set.h"
 #include "kerf/base/parallel.h"
-#include "kerf/build/builders.h"
 #include "kerf/layout/quantised_bvh.h"
 #include "kerf/layout/wide_collapse.h"
 #include "kerf/scene/scene.h"
@@ -21,18 +20,10 @@
 #include "tests/support/moving_things.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/sizes.h"
+#include "tests/support/wide_trees.h"
 
 namespace kerf::test {
 namespace {
-
-Bvh built(std::span<const Geometry> geometries) {
-  const BuilderEntry& lbvh =
-      *std::find_if(builders().begin(), builders().end(), [](const auto& entry) { return entry.name == "lbvh"; });
-  Bvh bvh =
-      lbvh.build({make_references(geometries).references, geometry_clipper(geometries)}, OptionValues(lbvh.options));
-  mark_repeated(bvh, geometries);
-  return bvh;
-}
 
 /// A bumpy square of so many squares of two triangles each, with two colours in turn, each a geometry over the same
 /// vertices.
@@ -190,7 +181,7 @@ TEST(QuantisedBvh, MeshesAreHitAsByBruteForceOnEveryInstructionSet) {
 TEST(QuantisedBvh, TakesHalfTheMemoryOfTheFullLayout) {
   const BumpyMesh mesh(100, false);
   const std::vector<Geometry> geometries = mesh.geometries();
-  const Bvh bvh = built(geometries);
+  const Bvh bvh = lbvh_tree(geometries);
   const auto layout = make_quantised_bvh(bvh, geometries);
   EXPECT_EQ(find_fault(layout, geometries), std::nullopt);
   EXPECT_LT(static_cast<double>(layout.bytes()), 0.58 * static_cast<double>(make_wide_bvh<8>(bvh, geometries).bytes()));
@@ -199,7 +190,7 @@ TEST(QuantisedBvh, TakesHalfTheMemoryOfTheFullLayout) {
 TEST(QuantisedBvh, AnyNumberOfThreadsMakesTheSame) {
   const RandomTriangles triangles(kManyThings);
   const Geometry geometry = triangles.geometry();
-  const Bvh bvh = built({&geometry, 1});
+  const Bvh bvh = lbvh_tree({&geometry, 1});
   uint64_t hash = 0;
   for (const int threads : {1, 2, 7}) {
     with_threads(threads, [&] {
@@ -214,13 +205,8 @@ TEST(QuantisedBvh, AnyNumberOfThreadsMakesTheSame) {
 TEST(QuantisedBvh, ItsMemoryCountsAndItsNameIsInErrors) {
   const RandomTriangles triangles(kManyThings);
   const Geometry geometry = triangles.geometry();
-  const Bvh bvh = built({&geometry, 1});
-  WorkMeter meter;
-  WorkLimit limit;
-  limit.meter = &meter;
-  const LimitScope scope(&limit);
-  const auto layout = make_quantised_bvh(bvh, {&geometry, 1});
-  EXPECT_EQ(meter.peak(), layout.bytes() + bvh.nodes.size() * WideCollapse::kBytesPerNode);
+  const Bvh bvh = lbvh_tree({&geometry, 1});
+  peak_of_making(bvh, [&] { return make_quantised_bvh(bvh, {&geometry, 1}); });
   const WideCollapse::LeafUnits large = [](std::span<const LeafSlot>, std::span<const Geometry>) { return size_t{99}; };
   const std::string words = error_of(ErrorCode::too_large, [&] {
     WideCollapse(bvh, {&geometry, 1}, 8, {}, 98, large, "quantised_bvh");
@@ -240,7 +226,7 @@ using Place = std::pair<uint32_t, uint32_t>;  // a node and which of its childre
 /// A tree of triangles, spheres and parallelograms to be damaged: every damage must be found and change the hash.
 class DamagedTree : public testing::Test {
  protected:
-  DamagedTree() : geometries_(things_.geometries()), whole_(make_quantised_bvh(built(geometries_), geometries_)) {
+  DamagedTree() : geometries_(things_.geometries()), whole_(make_quantised_bvh(lbvh_tree(geometries_), geometries_)) {
     EXPECT_EQ(find_fault(whole_, geometries_), std::nullopt);
     EXPECT_GT(whole_.nodes.size(), 10U);
   }

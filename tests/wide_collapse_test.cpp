@@ -7,10 +7,8 @@
 #include <string>
 
 #include "kerf/base/parallel.h"
-#include "kerf/build/builders.h"
 #include "kerf/layout/wide_bvh.h"
 #include "kerf/layout/wide_collapse.h"
-#include "kerf/references/early_split.h"
 #include "kerf/scene/scene.h"
 #include "kerf/trace/trace_wide.h"
 #include "tests/support/error_of.h"
@@ -18,19 +16,10 @@
 #include "tests/support/moving_things.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/sizes.h"
+#include "tests/support/wide_trees.h"
 
 namespace kerf::test {
 namespace {
-
-Bvh built(std::span<const Geometry> geometries, bool split = false) {
-  std::vector<Reference> references = make_references(geometries).references;
-  if (split) references = early_split(references, geometry_clipper(geometries), EarlySplit::with_budget(2)).references;
-  const BuilderEntry& lbvh =
-      *std::find_if(builders().begin(), builders().end(), [](const auto& entry) { return entry.name == "lbvh"; });
-  Bvh bvh = lbvh.build({std::move(references), geometry_clipper(geometries)}, OptionValues(lbvh.options));
-  mark_repeated(bvh, geometries);
-  return bvh;
-}
 
 /// What the layout's nodes and leaves cost together by the same model.
 template <uint32_t kWidth>
@@ -104,7 +93,7 @@ TEST(WideCollapse, NeverCostsMoreThanOpeningTheLargestChild) {
   for (const uint32_t seed : {1U, 2U, 3U}) {
     const RandomTriangles triangles(2000, seed);
     const Geometry geometry = triangles.geometry();
-    const Bvh bvh = built({&geometry, 1});
+    const Bvh bvh = lbvh_tree({&geometry, 1});
     for (const double triangle : {0.0, 0.1, 0.5, 2.0}) {
       WideCosts costs;
       costs.triangle = triangle;
@@ -144,7 +133,7 @@ TEST(WideCollapse, WhatHasNoAreaMakesFewNodes) {
 TEST(WideCollapse, WhatIsTooLargeForItsNumbersIsAnError) {
   const RandomTriangles triangles(500);
   const Geometry geometry = triangles.geometry();
-  const Bvh bvh = built({&geometry, 1});
+  const Bvh bvh = lbvh_tree({&geometry, 1});
   const uint32_t units = WideCollapse(bvh, {&geometry, 1}, 8, {}).size(0).units;
   EXPECT_NO_THROW(WideCollapse(bvh, {&geometry, 1}, 8, {}, units));
   const std::string words = error_of(ErrorCode::too_large, [&] {
@@ -156,18 +145,14 @@ TEST(WideCollapse, WhatIsTooLargeForItsNumbersIsAnError) {
 TEST(WideCollapse, ItsMemoryCountsAndItsLimitIsKept) {
   const RandomTriangles triangles(kManyThings);
   const Geometry geometry = triangles.geometry();
-  const Bvh bvh = built({&geometry, 1});
+  const Bvh bvh = lbvh_tree({&geometry, 1});
+  const auto make = [&] { return make_wide_bvh<8>(bvh, {&geometry, 1}); };
   WorkMeter meter;
   WorkLimit limit;
   limit.meter = &meter;
-  {
-    const LimitScope scope(&limit);
-    const auto layout = make_wide_bvh<8>(bvh, {&geometry, 1});
-    EXPECT_EQ(meter.peak(), layout.bytes() + bvh.nodes.size() * WideCollapse::kBytesPerNode);
-  }
-  limit.bytes = meter.peak() - 1;
+  limit.bytes = peak_of_making(bvh, make) - 1;
   const LimitScope scope(&limit);
-  error_of(ErrorCode::stopped, [&] { make_wide_bvh<8>(bvh, {&geometry, 1}); });
+  error_of(ErrorCode::stopped, make);
   limit.bytes = static_cast<size_t>(-1);
   const std::atomic<bool> cancelled = true;
   limit.cancelled = &cancelled;
@@ -204,7 +189,7 @@ TEST(WideTree, AnyNumberOfThreadsMakesTheSame) {
   const RandomTriangles triangles(kManyThings);
   const Geometry geometry = triangles.geometry();
   for (const bool split : {false, true}) {
-    const Bvh bvh = built({&geometry, 1}, split);
+    const Bvh bvh = lbvh_tree({&geometry, 1}, split);
     uint64_t hash4 = 0, hash8 = 0;
     for (const int threads : {1, 2, 7}) {
       with_threads(threads, [&] {
@@ -233,7 +218,7 @@ template <uint32_t kWidth>
 void check_damage() {
   const MovingThings things = random_things(600, 4);
   const std::vector<Geometry> geometries = things.geometries();
-  const auto whole = make_wide_bvh<kWidth>(built(geometries), geometries);
+  const auto whole = make_wide_bvh<kWidth>(lbvh_tree(geometries), geometries);
   ASSERT_EQ(find_fault(whole, geometries), std::nullopt);
   ASSERT_GT(whole.nodes.size(), 10U);
   const auto expect_found = [&](const std::string& what, const std::function<void(WideBvh<kWidth>&)>& damage,
