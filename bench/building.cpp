@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "bench/benchmark_main.h"
 #include "kerf/base/parallel.h"
 #include "kerf/build/builders.h"
 #include "kerf/build/optimisers.h"
@@ -88,11 +89,4 @@ void add_all() {
 }  // namespace
 }  // namespace kerf
 
-int main(int argc, char** argv) {
-  kerf::add_all();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
-}
+int main(int argc, char** argv) { return kerf::run_benchmarks(argc, argv, kerf::add_all); }

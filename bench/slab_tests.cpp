@@ -16,6 +16,7 @@
 #include <map>
 #include <memory>
 
+#include "bench/benchmark_main.h"
 #include "kerf/io/ply.h"
 #include "kerf/scene/scene.h"
 #include "kerf/trace/ray_box.h"
@@ -167,11 +168,4 @@ void add_all() {
 }  // namespace
 }  // namespace kerf::test
 
-int main(int argc, char** argv) {
-  kerf::test::add_all();
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
-}
+int main(int argc, char** argv) { return kerf::run_benchmarks(argc, argv, kerf::test::add_all); }
