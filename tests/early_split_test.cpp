@@ -1,4 +1,4 @@
-// Early split clipping and the references that it starts from: bounds, cover, caps, and the same outcome always.
+// Early split clipping: bounds, cover, caps, limits, and the same outcome always.
 
 #include <gtest/gtest.h>
 
@@ -26,20 +26,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-/// Large triangles of all sizes, a few of them slivers.
-Soup random_soup(size_t count, uint64_t seed) {
-  Random random(seed);
-  Soup soup;
-  while (soup.triangles.size() < count) {
-    const float size = 10 * random.share() * random.share();
-    Triangle t{random.vector(), random.vector(), random.vector()};
-    if (random.below(5) == 0) t.c = t.a + random.share() * (t.b - t.a) + 1e-3F * t.c;
-    const Vec3f center = 10.0F * random.vector();
-    soup.add({center + size * t.a, center + size * t.b, center + size * t.c});
-  }
-  return soup;
-}
 
 SplitResult split(const Geometry& geometry, const EarlySplit& options) {
   const std::span<const Geometry> geometries(&geometry, 1);
@@ -311,33 +297,6 @@ TEST(SplitReferences, AreThoseOfTheMesh) {
   const std::string text = error_of(ErrorCode::invalid_geometry, [&] { split_references(bad.mesh()); });
   EXPECT_EQ(split_references(bad.mesh(), {}, true).size(), 498U);
   EXPECT_NE(text.find("triangle 2"), std::string::npos) << text;
-}
-
-TEST(MakeReferences, CountsAndNamesWhatIsWrong) {
-  Soup soup = random_soup(20000, 15);  // more than two blocks
-  soup.vertices[3 * 9000].x = std::numeric_limits<float>::infinity();
-  soup.triangles[9001][2] = 60000;
-  soup.triangles[17000] = {0, 0, 1};
-  const Sphere spheres[] = {{{0, 0, 0}, 1}, {{0, 0, 0}, -1}, {{0, 0, 0}, 0}, {{0, 0, 1e37F}, 1}};
-  const Parallelogram shapes[] = {{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 0, 0}, {1e36F, 0, 0}, {1e36F, 1, 0}}};
-  const Geometry geometries[] = {
-      {Strided<Sphere>(spheres, 1)}, {soup.mesh()}, {Strided<Sphere>(spheres, 4)}, {Strided<Parallelogram>(shapes, 2)}};
-  const std::string text = error_of(ErrorCode::invalid_geometry, [&] { make_references(geometries); });
-  EXPECT_NE(text.find("geometry 1, triangle 9000"), std::string::npos) << text;
-  EXPECT_NE(text.find("not finite"), std::string::npos) << text;
-  EXPECT_NE(text.find(" 5 such"), std::string::npos) << text;
-  const PrimitiveReferences kept = make_references(geometries, true);
-  EXPECT_EQ(kept.invalid, 5U);
-  EXPECT_EQ(kept.degenerate, 3U);
-  ASSERT_EQ(kept.references.size(), 1U + 19997U + 1U);
-  EXPECT_TRUE(
-      std::is_sorted(kept.references.begin(), kept.references.end(), [](const Reference& a, const Reference& b) {
-        return std::pair(a.geometry, a.primitive) < std::pair(b.geometry, b.primitive);
-      }));
-  for (const Reference& r : kept.references) {
-    EXPECT_EQ(r.bounds(), primitive_bounds(geometries[r.geometry], r.primitive));
-    EXPECT_EQ(find_defect(geometries[r.geometry], r.primitive), Defect::none);
-  }
 }
 
 TEST(EarlySplit, GivesUpAtItsLimit) {

@@ -185,7 +185,7 @@ FAULTS = [
           "const StandardFloat standard;", "", "scene_test"),
     Fault("invalid primitives skipped without being asked", "kerf/references/reference.cpp",
           "if (result.invalid > 0 && !skip_invalid)", "if (result.invalid > 0 && skip_invalid)",
-          "early_split_test nasty_test"),
+          "references_test nasty_test"),
     Fault("a PFM upside down", "kerf/io/image_write.cpp",
           "for (size_t y = image.height; y-- > 0;) {", "for (size_t y = 0; y < image.height; ++y) {", "image_test"),
     # Automatic splitting.
