@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <utility>
 
+#include "kerf/study/bench_findings.h"
 #include "kerf/study/bench_ratios.h"
 #include "kerf/study/spread.h"
 
@@ -16,7 +16,6 @@ namespace kerf {
 namespace {
 
 constexpr std::string_view kQuantised = "quantised_";
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 constexpr double kLeastSingle = 1.25, kLeastOfAnyScene = 0.9, kLeastBesideRobust = 2;
 constexpr double kLeastBatch = 1.75, kLeastBesideBestBatch = 1.25;
@@ -51,86 +50,6 @@ constexpr BenchGoal kGoals[] = {
     {"watertight", "watertight", "as many instructions per node as a kernel that is not"},
 };
 
-/// A verdict without its goal.
-struct Finding {
-  GoalState state = GoalState::not_measured;
-  double measured = kUnknown;
-  std::string text;
-};
-
-Finding not_measured(std::string why) { return {GoalState::not_measured, kUnknown, std::move(why)}; }
-GoalState reached_if(bool is_reached) { return is_reached ? GoalState::reached : GoalState::missed; }
-
-using Scenes = std::vector<BenchScene>;
-
-/// What was found scene by scene.
-struct Column {
-  std::vector<double> values;  ///< of those where it is known
-  size_t scenes = 0;
-  double least = kUnknown, most = kUnknown;
-  std::string least_scene, most_scene;
-
-  double mean() const { return geometric_mean(values); }
-  size_t missing() const { return scenes - values.size(); }
-};
-
-Column column_of(const Scenes& scenes, const std::function<double(const BenchScene&)>& value_of) {
-  Column column;
-  for (const BenchScene& scene : scenes) {
-    const double value = value_of(scene);
-    ++column.scenes;
-    if (std::isnan(value)) continue;
-    column.values.push_back(value);
-    if (!(column.least <= value)) {
-      column.least = value;
-      column.least_scene = scene.title();
-    }
-    if (!(column.most >= value)) {
-      column.most = value;
-      column.most_scene = scene.title();
-    }
-  }
-  return column;
-}
-
-/// Reached only where it is known on every scene.
-Finding with_all(const Column& column, double measured, bool is_reached, const std::string& text) {
-  if (column.values.empty())
-    return not_measured(column.scenes == 0 ? "there is no scene with one thread" : "it is not known on any scene");
-  Finding finding{reached_if(is_reached), measured, text};
-  if (column.missing() > 0) {
-    finding.text += fmt::format("; not known on {} of {} scenes", column.missing(), column.scenes);
-    if (is_reached) finding.state = GoalState::not_measured;
-  }
-  return finding;
-}
-
-Finding mean_at_least(const Column& column, double bar, const std::string& what) {
-  return with_all(
-      column, column.mean(), column.mean() >= bar,
-      fmt::format("{:.3f}x ({}); least {:.3f}x ({})", column.mean(), what, column.least, column.least_scene));
-}
-
-Finding mean_at_most(const Column& column, double bar, const std::string& what, bool is_strict = false) {
-  const double mean = column.mean();
-  return with_all(column, mean, is_strict ? mean < bar : mean <= bar,
-                  fmt::format("{:.3f} ({}); most {:.3f} ({})", mean, what, column.most, column.most_scene));
-}
-
-/// The worst of several findings that must all be reached.
-Finding all_of(const std::vector<Finding>& findings) {
-  const auto rank = [](const Finding& f) {
-    return f.state == GoalState::missed ? 0 : f.state == GoalState::reached ? 2 : 1;
-  };
-  Finding out = findings.front();
-  out.text.clear();
-  for (const Finding& finding : findings) {
-    if (rank(finding) < rank(out)) out = {finding.state, finding.measured, out.text};
-    if (out.text.find(finding.text) == std::string::npos) out.text += (out.text.empty() ? "" : "; ") + finding.text;
-  }
-  return out;
-}
-
 /// Everything that is judged together.
 class Judge {
  public:
@@ -142,7 +61,7 @@ class Judge {
     batch_ = judged_row(alone_, Feed::batch);
   }
 
-  std::vector<Finding> findings() const {
+  std::vector<BenchFinding> findings() const {
     return {single("diffuse"), single("shadow"), single("primary"),
             single_least(),    robust(),         batch("diffuse"),
             batch("shadow"),   batch_best(),     build_balanced(),
@@ -152,23 +71,23 @@ class Judge {
   }
 
  private:
-  Finding beside(std::string_view quality, const std::string& row, Feed feed, const char* kind, double bar) const {
+  BenchFinding beside(std::string_view quality, const std::string& row, Feed feed, const char* kind, double bar) const {
     if (row.empty()) return not_measured(nothing());
-    const Column column =
+    const BenchColumn column =
         column_of(alone_, [&](const BenchScene& scene) { return ratio_to(scene, quality, row, feed, kind); });
-    Finding finding = mean_at_least(column, bar, row);
+    BenchFinding finding = mean_at_least(column, bar, row);
     if (column.values.empty()) finding.text = fmt::format("{} rays: {}", kind, finding.text);
     return finding;
   }
-  Finding single(const char* kind) const { return beside("high", single_, Feed::loop, kind, kLeastSingle); }
-  Finding batch(const char* kind) const { return beside("high", batch_, Feed::batch, kind, kLeastBatch); }
+  BenchFinding single(const char* kind) const { return beside("high", single_, Feed::loop, kind, kLeastSingle); }
+  BenchFinding batch(const char* kind) const { return beside("high", batch_, Feed::batch, kind, kLeastBatch); }
 
   std::string nothing() const {
     return alone_.empty() ? "there is no scene with one thread" : "no row of Kerf's and of Embree's HIGH to compare";
   }
 
-  Finding robust() const {
-    std::vector<Finding> kinds;
+  BenchFinding robust() const {
+    std::vector<BenchFinding> kinds;
     for (const char* kind : {"diffuse", "shadow", "primary"}) {
       kinds.push_back(beside("robust", single_, Feed::loop, kind, kLeastBesideRobust));
       kinds.back().text = fmt::format("{} {}", kind, kinds.back().text);
@@ -176,10 +95,10 @@ class Judge {
     return all_of(kinds);
   }
 
-  Finding single_least() const {
+  BenchFinding single_least() const {
     if (single_.empty()) return not_measured(nothing());
     std::string where;
-    const Column column = column_of(alone_, [&](const BenchScene& scene) {
+    const BenchColumn column = column_of(alone_, [&](const BenchScene& scene) {
       double least = kUnknown;
       for (const char* kind : {"diffuse", "shadow", "primary"}) {
         const double ratio = ratio_to(scene, "high", single_, Feed::loop, kind);
@@ -193,11 +112,11 @@ class Judge {
   }
 
   /// Kerf's batches beside the fastest way to feed HIGH, chosen scene by scene.
-  Finding batch_best() const {
+  BenchFinding batch_best() const {
     if (batch_.empty()) return not_measured(nothing());
-    std::vector<Finding> kinds;
+    std::vector<BenchFinding> kinds;
     for (const char* kind : {"diffuse", "shadow"}) {
-      const Column column = column_of(alone_, [&](const BenchScene& scene) {
+      const BenchColumn column = column_of(alone_, [&](const BenchScene& scene) {
         const BenchRow *high = scene.embree("high"), *row = scene.row(batch_);
         const std::optional<size_t> number = kind_number(scene, kind);
         if (high == nullptr || row == nullptr || !number) return kUnknown;
@@ -214,8 +133,8 @@ class Judge {
   }
 
   /// Build seconds of a preset over those of a quality; `divisor` of Kerf's row.
-  Column build_column(const std::string& preset, std::string_view quality,
-                      const std::function<double(const BenchRow&)>& divisor) const {
+  BenchColumn build_column(const std::string& preset, std::string_view quality,
+                           const std::function<double(const BenchRow&)>& divisor) const {
     const std::string name = best_row(alone_, preset, Feed::loop);
     return column_of(alone_, [&](const BenchScene& scene) {
       const BenchRow *row = scene.row(name), *base = scene.embree(quality);
@@ -223,28 +142,28 @@ class Judge {
     });
   }
 
-  Finding build_balanced() const {
+  BenchFinding build_balanced() const {
     const std::string name = best_row(alone_, "balanced", Feed::loop);
     if (name.empty()) return not_measured(nothing());
-    const Column column = column_of(alone_, [&](const BenchScene& scene) {
+    const BenchColumn column = column_of(alone_, [&](const BenchScene& scene) {
       const BenchRow* row = scene.row(name);
       if (row == nullptr || scene.triangles == 0) return kUnknown;
       const double r = std::max(1.0, row->references.value_or(kUnknown) / static_cast<double>(scene.triangles));
       return build_seconds(row) / build_seconds(scene.embree("medium")) / r;
     });
     const double speed = overall_ratio(alone_, name, Feed::loop);
-    Finding build = mean_at_most(column, kMostBalancedBuild, name + ", over R");
-    Finding rays{reached_if(speed >= kLeastBalancedSpeed), speed, fmt::format("rays {:.3f}x HIGH", speed)};
+    BenchFinding build = mean_at_most(column, kMostBalancedBuild, name + ", over R");
+    BenchFinding rays{reached_if(speed >= kLeastBalancedSpeed), speed, fmt::format("rays {:.3f}x HIGH", speed)};
     return all_of({build, rays});
   }
 
-  Finding build_best() const {
-    const Column column = build_column("best", "high", [](const BenchRow&) { return 1.0; });
+  BenchFinding build_best() const {
+    const BenchColumn column = build_column("best", "high", [](const BenchRow&) { return 1.0; });
     return mean_at_most(column, 1, "of HIGH's time");
   }
 
-  Finding build_fast() const {
-    const Column column = build_column("fast", "medium", [](const BenchRow&) { return 1.0; });
+  BenchFinding build_fast() const {
+    const BenchColumn column = build_column("fast", "medium", [](const BenchRow&) { return 1.0; });
     return mean_at_most(column, 1, "of MEDIUM's time", true);
   }
 
@@ -257,7 +176,7 @@ class Judge {
     return bytes_per_reference(scene.row(name)) / bytes_per_reference(scene.embree("high"));
   }
 
-  Finding bytes() const {
+  BenchFinding bytes() const {
     if (single_.empty()) return not_measured(nothing());
     return mean_at_most(column_of(alone_, [&](const BenchScene& scene) { return bytes_share(scene, single_); }), 1,
                         single_ + ", of HIGH's");
@@ -275,8 +194,8 @@ class Judge {
   }
 
   /// A row of the judged preset with a small form of the judged one's layout.
-  Finding bytes_quantised() const {
-    Scenes asked;
+  BenchFinding bytes_quantised() const {
+    std::vector<BenchScene> asked;
     for (const BenchScene& scene : alone_) {
       if (scene.name.starts_with("sanmiguel") || scene.name.starts_with("tower_bridge")) asked.push_back(scene);
     }
@@ -287,7 +206,7 @@ class Judge {
     std::string text;
     for (const std::string& name : kerf_rows(asked, "")) {
       if (!is_small_form(name, full_name)) continue;
-      const Column share = column_of(asked, [&](const BenchScene& scene) { return bytes_share(scene, name); });
+      const BenchColumn share = column_of(asked, [&](const BenchScene& scene) { return bytes_share(scene, name); });
       const double speed = overall_ratio(asked, name, Feed::loop) / full;
       if (share.missing() > 0 || std::isnan(speed)) continue;
       at_60 |= share.mean() <= 0.6 && speed >= 0.9;
@@ -310,7 +229,7 @@ class Judge {
   }
 
   /// Kerf's gains from the second thread over Embree's: each scene's, then the mean.
-  static Finding gains(const std::vector<double>& values, const char* what) {
+  static BenchFinding gains(const std::vector<double>& values, const char* what) {
     const double mean = geometric_mean(values);
     if (std::isnan(mean)) return not_measured("no scene was measured with --threads 1,2");
     return {reached_if(mean >= kLeastOfThreads), mean, fmt::format("{} {:.3f} of Embree's gain", what, mean)};
@@ -320,8 +239,8 @@ class Judge {
     return one != nullptr && two != nullptr ? median_of(one->seconds) / median_of(two->seconds) : kUnknown;
   }
 
-  Finding threads_rays() const {
-    std::vector<Finding> kinds;
+  BenchFinding threads_rays() const {
+    std::vector<BenchFinding> kinds;
     for (const char* kind : {"diffuse", "shadow", "primary"}) {
       std::vector<double> values;
       with_pairs([&](const BenchScene& one, const BenchScene& two) {
@@ -336,7 +255,7 @@ class Judge {
     return all_of(kinds);
   }
 
-  Finding threads_build(const char* preset, std::string_view quality) const {
+  BenchFinding threads_build(const char* preset, std::string_view quality) const {
     const std::string name = best_row(alone_, preset, Feed::loop);
     std::vector<double> values;
     with_pairs([&](const BenchScene& one, const BenchScene& two) {
@@ -346,13 +265,13 @@ class Judge {
     });
     return gains(values, preset);
   }
-  Finding threads_builds() const {
+  BenchFinding threads_builds() const {
     return all_of({threads_build("balanced", "medium"), threads_build("best", "high")});
   }
 
   /// From the smallest to the largest model of each family, all kinds together.
-  Finding growth() const {
-    Scenes models;
+  BenchFinding growth() const {
+    std::vector<BenchScene> models;
     for (const BenchScene& scene : all_) {
       if (scene.threads == 1 && !scene.family.empty()) models.push_back(scene);
     }
@@ -364,9 +283,9 @@ class Judge {
     if (std::isnan(share)) return not_measured("it is not known for the smallest and the largest");
     const auto least = static_cast<double>(models.front().triangles),
                most = static_cast<double>(models.back().triangles);
-    Finding finding{reached_if(share >= 1), share,
-                    fmt::format("{} from {} to {} triangles: the ratio to HIGH grows {:.3f}x", row,
-                                models.front().triangles, models.back().triangles, share)};
+    BenchFinding finding{reached_if(share >= 1), share,
+                         fmt::format("{} from {} to {} triangles: the ratio to HIGH grows {:.3f}x", row,
+                                     models.front().triangles, models.back().triangles, share)};
     if (finding.state == GoalState::reached && !(least <= kGrowthFrom && most >= kGrowthTo)) {
       finding.state = GoalState::not_measured;
     }
@@ -374,7 +293,7 @@ class Judge {
   }
 
   /// With every number of threads.
-  Finding hits() const {
+  BenchFinding hits() const {
     size_t rays = 0, unexplained = 0, unlike = 0;
     for (const BenchScene& scene : all_) {
       for (const BenchVerdicts& verdicts : scene.verdicts) {
@@ -391,7 +310,7 @@ class Judge {
   }
 
   std::span<const BenchScene> all_;
-  Scenes alone_;  // one thread, no families
+  std::vector<BenchScene> alone_;  // one thread, no families
   std::string single_, batch_;
 };
 
@@ -400,7 +319,7 @@ class Judge {
 std::span<const BenchGoal> bench_goals() { return kGoals; }
 
 std::vector<BenchVerdict> bench_verdicts(std::span<const BenchScene> scenes) {
-  std::vector<Finding> findings = Judge(scenes).findings();
+  std::vector<BenchFinding> findings = Judge(scenes).findings();
   std::vector<BenchVerdict> verdicts;
   for (size_t i = 0; i < std::size(kGoals); ++i) {
     verdicts.push_back({&kGoals[i], findings[i].state, findings[i].measured, std::move(findings[i].text)});
