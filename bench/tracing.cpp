@@ -1,6 +1,6 @@
 // kerf_bench_tracing: rays through each layout by each instruction set that the machine has, one at a time and in
-// batches, over a model out of a program; and the parts of a traversal by themselves: rays that meet a node's eight
-// boxes and enter none, and rays that meet one leaf of so many triangles.
+// batches, on one thread, over a model out of a program; and the parts of a traversal by themselves: rays that meet a
+// node's eight boxes and enter none, and rays that meet one leaf of so many triangles.
 //
 // Example: kerf_bench_tracing --benchmark_filter=bvh8/avx2 --benchmark_repetitions=9
 
@@ -67,7 +67,7 @@ void run(benchmark::State& state, const Work& work, const std::string& structure
   std::vector<Hit> hits(work.rays.size());
   for (auto _ : state) {
     if (query == Query::batch) {
-      scene->closest_hit(work.rays, hits);
+      scene->closest_hit(work.rays, hits, 1);  // figures are of the time of this thread
     } else if (query == Query::any) {
       for (const Ray& ray : work.rays) benchmark::DoNotOptimize(scene->any_hit(ray));
     } else {
@@ -82,7 +82,8 @@ void run(benchmark::State& state, const Work& work, const std::string& structure
 void add(const std::string& name, const SharedWork& work, const std::string& structure, std::string_view set,
          Query query = Query::closest) {
   const std::string instructions(set);
-  benchmark::RegisterBenchmark((name + "/" + instructions).c_str(), [=](benchmark::State& state) {
+  const std::string full_name = set.empty() ? name : name + "/" + instructions;
+  benchmark::RegisterBenchmark(full_name.c_str(), [=](benchmark::State& state) {
     run(state, *work, structure, instructions, query);
   })->Unit(benchmark::kMillisecond);
 }
