@@ -58,6 +58,7 @@ std::vector<Ray> odd_rays(size_t count, uint32_t seed = 3) {
     if (i % 29 == 0) ray.origin.x = -1e25F;  // not for fused box tests
     if (i % 31 == 0) ray.direction = 1e-20F * ray.direction;
     if (i % 37 == 0 && i > 0) ray = rays[i - 1];
+    if (i % 41 == 0) ray.t_min = ray.t_max = i % 2 == 0 ? 0.0F : -0.0F;
     rays.push_back(ray);
   }
   return rays;

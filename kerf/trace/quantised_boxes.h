@@ -49,27 +49,55 @@ struct QuantisedBoxTests {
         row_y((ray.octant >> 1 & 1) * kWidth),
         row_z((ray.octant >> 2 & 1) * kWidth) {}
 
-  /// Which children the ray enters within [t_min, limit], and where.
+  /// As of BoxTests.
   HWY_INLINE uint32_t enter(const QuantisedNode& node, float limit, float* entry) const {
+    uint32_t entered = 0;
+    test(node, limit, [&](uint32_t i, V near, hn::Mask<Lanes> is_entered) {
+      hn::Store(near, Lanes(), entry + i);
+      entered |= bits_of(Lanes(), is_entered) << i;
+    });
+    return entered & places(node);
+  }
+  /// The key of the child to go on with, ChildKey::kNone if none is entered; the others' are put on top.
+  template <bool kAny>
+  HWY_INLINE uint64_t take(const QuantisedNode& node, float limit, uint64_t*& top) const {
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+    uint64_t taken = 0;
+    test(node, limit, [&](uint32_t, V near, hn::Mask<Lanes> is_entered) {
+      const uint32_t entered = bits_of(Lanes(), is_entered) & places(node);
+      const VectorKeys<kWidth> keys(&node.child[0].word, near, entered);
+      taken = kAny ? keys.take_first(&node.child[0].word, top) : keys.take_nearest(top);
+    });
+    return taken;
+#else
+    HWY_ALIGN float entry[kWidth];
+    const uint32_t entered = enter(node, limit, entry);
+    return kAny ? take_first(&node.child[0].word, entry, entered, top)
+                : take_nearest(&node.child[0].word, entry, entered, top);
+#endif
+  }
+
+ private:
+  static HWY_INLINE uint32_t places(const QuantisedNode& node) { return (1U << node.children) - 1; }
+
+  /// As of BoxTests.
+  template <class F>
+  HWY_INLINE void test(const QuantisedNode& node, float limit, F&& f) const {
     const Lanes d;
     const uint32_t* const sides = &node.sides[0][0];
     const Axis<0> x(node, inverse_x, near_x, far_x);
     const Axis<1> y(node, inverse_y, near_y, far_y);
     const Axis<2> z(node, inverse_z, near_z, far_z);
-    uint32_t entered = 0;
     for (uint32_t i = 0; i < kWidth; i += hn::MaxLanes(d)) {
       const auto x0 = x.near(sides + row_x + i), x1 = x.far(sides + (row_x ^ kWidth) + i);
       const auto y0 = y.near(sides + row_y + i), y1 = y.far(sides + (row_y ^ kWidth) + i);
       const auto z0 = z.near(sides + row_z + i), z1 = z.far(sides + (row_z ^ kWidth) + i);
       const auto near = hn::Max(hn::Max(x0, y0), hn::Max(z0, t_min));
       const auto far = hn::Min(hn::Min(x1, y1), hn::Min(z1, hn::Set(d, limit)));
-      hn::Store(near, d, entry + i);
-      entered |= bits_of(d, hn::Le(near, far)) << i;
+      f(i, near, hn::Le(near, far));
     }
-    return entered & ((1U << node.children) - 1);
   }
 
- private:
   static HWY_INLINE V all(float value) { return hn::Set(Lanes(), value); }
 
   /// One axis of a node.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <limits>
+#include <memory>
+#include <new>
+#include <utility>
 
 #include "kerf/base/fp_environment.h"
 #include "kerf/base/instruction_set.h"
@@ -30,6 +32,7 @@ HWY_INLINE uint32_t bits_of(D d, M mask) {
   return bits[0];
 }
 
+#include "kerf/trace/child_keys.h"
 #include "kerf/trace/exact_test.h"
 #include "kerf/trace/leaf_tests.h"
 #include "kerf/trace/quantised_boxes.h"
@@ -71,6 +74,8 @@ struct QuantisedTree {
   using Sides = QuantisedSides;
 };
 
+#include "kerf/trace/leaf_visits.h"
+
 /// A ray on its way through such a tree.
 template <class Tree, bool kUsual, bool kAny, class Counts>
 class Walk {
@@ -78,21 +83,26 @@ class Walk {
   using Tracer = WideTracer<typename Tree::Layout>;
   using Node = typename Tree::Node;
   using Child = typename Tree::Child;
-  using Leaf = typename Tree::Leaf;
+  using Visits = LeafVisits<Tree, kAny, Counts>;
 
  public:
   Walk(const Tracer& tracer, const Ray& ray, const WideRay& wide, NearestHit& nearest, Counts& counts)
-      : tracer_(tracer), ray_(ray), wide_(wide), nearest_(nearest), counts_(counts) {}
+      : visits_(tracer, ray, wide, nearest, counts),
+        tracer_(tracer),
+        ray_(ray),
+        wide_(wide),
+        nearest_(nearest),
+        counts_(counts) {}
 
   /// The loop over inner nodes calls nothing, so that what it needs stays in registers.
   HWY_INLINE void run(Child from) {
     constexpr uint32_t kMostWaiting = (kWidth - 1) * kMaxDepth;  // all children but one of each node above
     uint64_t waiting[1 + kMostWaiting + kWidth];
     uint64_t* top = waiting;
-    *top++ = key({Child::kEnd}, -std::numeric_limits<float>::infinity());
+    *top++ = ChildKey::end<Child>();
     const Node* const nodes = tracer_.layout.nodes.data();
     const typename Tree::template Boxes<kUsual> boxes(wide_);
-    uint64_t current = key(from, ray_.t_min);
+    uint64_t current = ChildKey::of(from.word, ray_.t_min);
     float limit = nearest_.hit.t;
     while (true) {
       while (!child_of(current).is_leaf()) {
@@ -110,59 +120,20 @@ class Walk {
       const Child leaf = child_of(current);
       if (leaf.kind() == Child::kEnd) return;
       counts_.count_nodes(1);
-      if (test_leaf(leaf)) return;
+      if (visits_.test(leaf)) return;
       limit = nearest_.hit.t;
       current = next(top, limit);
     }
   }
 
-  /// The triangles of `found`, exactly. Whether the walk is over.
-  static HWY_NOINLINE bool test_triangles(const Tracer& tracer, const Ray& ray, const WideRay& wide,
-                                          NearestHit& nearest, const Leaf& triangles, uint32_t found) {
-    resolve(tracer, ray, wide, nearest);
-    const ExactTest exact(ray, wide);
-    for (; found != 0; found &= found - 1) {
-      const auto i = static_cast<uint32_t>(std::countr_zero(found));
-      Crossing crossing;
-      if (!exact.hits(triangles, i, wide, nearest.hit.t, crossing)) continue;
-      const LeafSlot slot = triangles.slot(i);
-      if ((tracer.geometries[slot.geometry()].mask & ray.mask) == 0) continue;
-      const Hit hit{crossing.t, crossing.u, crossing.v, slot.primitive, slot.geometry(), kNone};
-      if (nearest.hit && !closer(hit, nearest.hit)) continue;
-      nearest.hit = hit;
-      if (kAny) return true;
-    }
-    nearest.least = nearest.hit.t;
-    return false;
-  }
-
-  /// Works the hit out that is to be, if any.
-  static HWY_INLINE void resolve(const Tracer& tracer, const Ray& ray, const WideRay& wide, NearestHit& nearest) {
-    if (nearest.leaf == 0) return;
-    const Leaf triangles = tracer.layout.triangles(Child{nearest.leaf});
-    const LeafSlot slot = triangles.slot(nearest.number);
-    Crossing crossing;
-    [[maybe_unused]] const bool is_hit =
-        ExactTest(ray, wide).hits(triangles, nearest.number, wide, nearest.hit.t, crossing);
-    assert(is_hit && crossing.t >= nearest.least);
-    nearest.hit = {crossing.t, crossing.u, crossing.v, slot.primitive, slot.geometry(), kNone};
-    nearest.least = crossing.t;
-    nearest.leaf = 0;
-  }
-
  private:
-  /// Nearer first as numbers, while entries are not negative; below that only the order suffers.
-  static HWY_INLINE uint64_t key(Child child, float entry) {
-    return uint64_t{std::bit_cast<uint32_t>(entry)} << 32 | child.word;
-  }
-  static HWY_INLINE float entry_of(uint64_t key) { return std::bit_cast<float>(static_cast<uint32_t>(key >> 32)); }
-  static HWY_INLINE Child child_of(uint64_t key) { return {static_cast<uint32_t>(key)}; }
+  static HWY_INLINE Child child_of(uint64_t key) { return {ChildKey::word(key)}; }
 
   /// The one on top that is not beyond the limit. The one at the bottom is not.
   static HWY_INLINE uint64_t next(uint64_t*& top, float limit) {
     do {
       --top;
-    } while (entry_of(*top) > limit);
+    } while (ChildKey::entry(*top) > limit);
     return *top;
   }
 
@@ -172,24 +143,24 @@ class Walk {
     uint64_t a = take(node, entry, entered);
     if (entered == 0) return a;
     uint64_t b = take(node, entry, entered);
-    order(b, a);
+    ChildKey::order(b, a);
     if (entered == 0) {
       *top++ = b;
       return a;
     }
     uint64_t c = take(node, entry, entered);
     if (entered == 0) {
-      order(c, a);
-      order(c, b);
+      ChildKey::order(c, a);
+      ChildKey::order(c, b);
       *top++ = c;
       *top++ = b;
       return a;
     }
     uint64_t d = take(node, entry, entered);
-    order(d, c);
-    order(d, b);
-    order(c, a);
-    order(c, b);
+    ChildKey::order(d, c);
+    ChildKey::order(d, b);
+    ChildKey::order(c, a);
+    ChildKey::order(c, b);
     uint64_t* const base = top;
     *top++ = d;
     *top++ = c;
@@ -219,23 +190,16 @@ class Walk {
     return first;
   }
 
-  /// The greater one first.
-  static HWY_INLINE void order(uint64_t& first, uint64_t& second) {
-    const uint64_t change = (first ^ second) & (uint64_t{0} - uint64_t{first < second});
-    first ^= change;
-    second ^= change;
-  }
-
   static HWY_INLINE uint64_t take(const Node& node, const float* entry, uint32_t& entered) {
     const auto i = static_cast<uint32_t>(std::countr_zero(entered));
     entered &= entered - 1;
-    return key(node.child[i], entry[i]);
+    return ChildKey::of(node.child[i].word, entry[i]);
   }
 
   static HWY_INLINE uint64_t take_last(const Node& node, const float* entry, uint32_t& entered) {
     const auto i = static_cast<uint32_t>(std::bit_width(entered) - 1);
     entered ^= 1U << i;
-    return key(node.child[i], entry[i]);
+    return ChildKey::of(node.child[i].word, entry[i]);
   }
 
   /// The nearest last.
@@ -248,57 +212,7 @@ class Walk {
     }
   }
 
-  /// Whether the walk is over: any hit is enough.
-  HWY_INLINE bool test_leaf(Child leaf) {
-    if (leaf.kind() == Child::kSlots) return test_slots(tracer_, ray_, wide_, nearest_, counts_, leaf);
-    const Leaf triangles = tracer_.layout.triangles(leaf);
-    if constexpr (Counts::kCounts) {
-      for (const LeafSlot& slot : tracer_.layout.slots(leaf)) counts_.count_primitives(std::span(&slot, 1));
-    }
-    Between between;
-    const Found found = typename Tree::Leaves{wide_}.find(triangles, nearest_.hit.t, between);
-    if (found.maybe == 0) return false;
-    if ((tracer_.shared_mask & ray_.mask) != 0) {
-      if constexpr (kAny) {
-        if (found.sure != 0) {
-          nearest_.hit.primitive = 0;  // some primitive
-          return true;
-        }
-      } else if (found.sure == found.maybe && take_nearest(leaf, found.sure, between)) {
-        return false;
-      }
-    }
-    return test_triangles(tracer_, ray_, wide_, nearest_, triangles, found.maybe);
-  }
-
-  /// Of triangles that the ray surely hits. False if it cannot be told which hit is the nearest.
-  HWY_INLINE bool take_nearest(Child leaf, uint32_t sure, const Between& between) {
-    do {
-      const auto i = static_cast<uint32_t>(std::countr_zero(sure));
-      if (between.most[i] < nearest_.least) {
-        nearest_.hit.t = between.most[i];
-        nearest_.least = between.least[i];
-        nearest_.leaf = leaf.word;
-        nearest_.number = i;
-      } else if (between.least[i] <= nearest_.hit.t) {
-        return false;
-      }
-      sure &= sure - 1;
-    } while (sure != 0);
-    return true;
-  }
-
-  static HWY_NOINLINE bool test_slots(const Tracer& tracer, const Ray& ray, const WideRay& wide, NearestHit& nearest,
-                                      Counts& counts, Child leaf) {
-    resolve(tracer, ray, wide, nearest);
-    const PreparedRay prepared(ray);
-    for (const LeafSlot& slot : tracer.layout.slots(leaf)) {
-      if (test_primitive(tracer.geometries, slot, prepared, nearest.hit, counts) && kAny) return true;
-    }
-    nearest.least = nearest.hit.t;
-    return false;
-  }
-
+  Visits visits_;
   const Tracer& tracer_;
   const Ray& ray_;
   const WideRay& wide_;
@@ -306,6 +220,7 @@ class Walk {
   Counts& counts_;
 };
 
+#include "kerf/trace/rays_in_flight.h"
 #include "kerf/trace/wide_stream.h"
 
 template <class Tree>
@@ -332,7 +247,7 @@ struct Kernel {
     } else {
       Walk<Tree, false, kAny, Counts>(tracer, ray, wide, nearest, counts).run(tracer.layout.root);
     }
-    if (!kAny) Walk<Tree, true, kAny, Counts>::resolve(tracer, ray, wide, nearest);
+    if (!kAny) LeafVisits<Tree, kAny, Counts>::resolve(tracer, ray, wide, nearest);
     return finished(nearest.hit);
   }
 

@@ -25,11 +25,41 @@ struct BoxTests {
     set(kUsual ? ray.inverse_far : ray.inverse, inverse_far_x, inverse_far_y, inverse_far_z);
   }
 
-  /// Which children the ray enters within [t_min, limit], and where.
+  /// Which children the ray enters within [t_min, limit], as bits, and where.
   HWY_INLINE uint32_t enter(const WideNode<kWidth>& node, float limit, float* entry) const {
+    uint32_t entered = 0;
+    test(node, limit, [&](uint32_t i, V near, hn::Mask<Lanes> is_entered) {
+      hn::Store(near, Lanes(), entry + i);
+      entered |= bits_of(Lanes(), is_entered) << i;
+    });
+    return entered;
+  }
+
+  /// The key of the child to go on with, ChildKey::kNone if none is entered; the others' are put on top.
+  template <bool kAny>
+  HWY_INLINE uint64_t take(const WideNode<kWidth>& node, float limit, uint64_t*& top) const {
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+    uint64_t taken = 0;
+    test(node, limit, [&](uint32_t, V near, hn::Mask<Lanes> is_entered) {
+      const uint32_t entered = bits_of(Lanes(), is_entered);
+      const VectorKeys<kWidth> keys(&node.child[0].word, near, entered);
+      taken = kAny ? keys.take_first(&node.child[0].word, top) : keys.take_nearest(top);
+    });
+    return taken;
+#else
+    HWY_ALIGN float entry[kWidth];
+    const uint32_t entered = enter(node, limit, entry);
+    return kAny ? take_first(&node.child[0].word, entry, entered, top)
+                : take_nearest(&node.child[0].word, entry, entered, top);
+#endif
+  }
+
+ private:
+  /// Calls f(first, where, whether) of children that a vector has room for at a time, from the first on.
+  template <class F>
+  HWY_INLINE void test(const WideNode<kWidth>& node, float limit, F&& f) const {
     const Lanes d;
     const float* const sides = &node.sides[0][0][0];
-    uint32_t entered = 0;
     for (uint32_t i = 0; i < kWidth; i += hn::MaxLanes(d)) {
       const auto x0 = near_t(sides + row_x + i, near_x, inverse_near_x),
                  x1 = far_t(sides + (row_x ^ kWidth) + i, far_x, inverse_far_x);
@@ -39,13 +69,10 @@ struct BoxTests {
                  z1 = far_t(sides + (row_z ^ kWidth) + i, far_z, inverse_far_z);
       const auto near = hn::Max(hn::Max(x0, y0), hn::Max(z0, t_min));
       const auto far = hn::Min(hn::Min(x1, y1), hn::Min(z1, hn::Set(d, limit)));
-      hn::Store(near, d, entry + i);
-      entered |= bits_of(d, hn::Le(near, far)) << i;
+      f(i, near, hn::Le(near, far));
     }
-    return entered;
   }
 
- private:
   static HWY_INLINE V all(float value) { return hn::Set(Lanes(), value); }
   static HWY_INLINE void set(Float4 values, V& x, V& y, V& z) {
     x = all(values[0]);

@@ -1,11 +1,12 @@
 // No include guard on purpose: a part of trace_wide.cpp, which includes it once for each instruction set, in
 // HWY_NAMESPACE, after Walk.
 
-/// Takes many rays through a WideBvh together: each node and leaf is looked at once for all rays that enter it, which
+/// Takes many rays through a wide tree together: each node and leaf is looked at once for all rays that enter it, which
 /// are listed by number (the idea: Barringer, Akenine-Moeller, Dynamic Ray Stream Traversal, 2014). A list goes on to
 /// the node's children, the one first that its rays enter earliest on average. No branch depends on a single ray, nodes
 /// and leaves are asked for before they are needed, and the tree does the sorting: rays need none beforehand but by
-/// the signs of their directions. Where a list is down to a ray, a Walk takes it on. Hits are those of single rays.
+/// the signs of their directions. Where a list has become short, its rays go on as RaysInFlight. Hits are those of
+/// single rays.
 template <class Tree, bool kAny>
 class Stream {
   static constexpr uint32_t kWidth = Tree::kWidth;
@@ -13,15 +14,18 @@ class Stream {
   using Node = typename Tree::Node;
   using Child = typename Tree::Child;
   using Sides = typename Tree::Sides;
+  using Visits = LeafVisits<Tree, kAny, NoCounts>;
+  using Flights = RaysInFlight<Tree, kAny>;
 
  public:
-  Stream(const Tracer& tracer, StreamMemory& memory)
+  Stream(const Tracer& tracer, StreamMemory& memory, typename Flights::Memory& flights)
       : tracer_(tracer),
         rays_(memory.rays()),
         hits_(memory.hits()),
         lists_(memory.lists()),
         entries_(memory.entries()),
-        entered_(memory.entered()) {}
+        entered_(memory.entered()),
+        flights_(tracer, memory.hits(), flights) {}
 
   /// The first `count` lists() are the rays; the directions of all have the same signs.
   void run(uint32_t count) {
@@ -32,7 +36,7 @@ class Stream {
     while (top != waiting) {
       const Task task = *--top;
       if (task.child.kind() == Child::kSlots || (!task.child.is_leaf() && !pays(task))) {
-        walk(task);
+        go_alone(task);
       } else if (task.child.is_leaf()) {
         test_leaf(task);
       } else {
@@ -57,9 +61,10 @@ class Stream {
     float order;            ///< the mean of their entries
   };
 
-  /// Whether a list is worth its trouble, and there is room for what comes of it.
+  /// Whether a list is long enough, and there is room for what comes of it.
   static bool pays(const Task& task) {
-    return task.count > 1 && task.free + 2 * kWidth * task.count + StreamMemory::kPadding <= StreamMemory::kListed;
+    return task.count >= kFewest &&
+           task.free + 2 * kWidth * task.count + StreamMemory::kPadding <= StreamMemory::kListed;
   }
 
   /// Box tests of all rays; which children any of them enters, and the sums of their entries.
@@ -132,11 +137,18 @@ class Stream {
     return hn::And(hn::TestBit(bits, hn::Set(d, 1U << i)), hn::FirstN(d, task.count - first));
   }
 
+  /// Those whose mask is set, and how many; what follows them is of no meaning. Not CompressStore(): writing through a
+  /// mask takes some processors a hundred cycles.
+  static HWY_INLINE size_t put(hn::Vec<Numbers> values, hn::Mask<Numbers> which, uint32_t* to) {
+    hn::StoreU(hn::Compress(values, which), Numbers(), to);
+    return hn::CountTrue(Numbers(), which);
+  }
+
   HWY_INLINE uint32_t list(const Task& task, uint32_t i, uint32_t* to) const {
     const Numbers d;
     const uint32_t* const begin = to;
     for (uint32_t first = 0; first < task.count; first += hn::MaxLanes(d)) {
-      to += hn::CompressStore(hn::LoadU(d, lists_ + task.first + first), entering(task, i, first), d, to);
+      to += put(hn::LoadU(d, lists_ + task.first + first), entering(task, i, first), to);
     }
     return static_cast<uint32_t>(to - begin);
   }
@@ -149,7 +161,7 @@ class Stream {
     const auto steps = hn::Mul(hn::Iota(places, 0), hn::Set(places, int32_t{kWidth}));
     for (uint32_t first = 0; first < task.count; first += hn::MaxLanes(d)) {
       const auto entries = hn::GatherIndex(Floats(), entries_ + size_t{first} * kWidth + i, steps);
-      to += hn::CompressStore(hn::BitCast(d, entries), entering(task, i, first), d, to);
+      to += put(hn::BitCast(d, entries), entering(task, i, first), to);
     }
     return static_cast<uint32_t>(to - begin);
   }
@@ -181,24 +193,24 @@ class Stream {
     }
     for (uint32_t i = 0; i < candidates; ++i) {
       StreamHit& hit = hits_[numbers[i]];
-      const bool is_over = Single::test_triangles(tracer_, *hit.ray, hit.wide, hit.nearest, triangles, entered_[i]);
+      const bool is_over = Visits::test_triangles(tracer_, *hit.ray, hit.wide, hit.nearest, triangles, entered_[i]);
       rays_[numbers[i]].limit = is_over ? -kInfinity : hit.nearest.hit.t;
     }
   }
 
-  /// Ray by ray.
-  HWY_NOINLINE void walk(const Task& task) {
-    for (uint32_t i = 0; i < task.count; ++i) {
-      const uint32_t number = lists_[task.first + i];
-      StreamHit& hit = hits_[number];
-      if (kAny && hit.nearest.hit) continue;
-      NoCounts counts;
-      Single(tracer_, *hit.ray, hit.wide, hit.nearest, counts).run(task.child);
-      rays_[number].limit = kAny && hit.nearest.hit ? -kInfinity : hit.nearest.hit.t;
+  /// Each ray by itself.
+  HWY_NOINLINE void go_alone(const Task& task) {
+    uint32_t* const numbers = lists_ + task.first;
+    const auto is_over = [&](uint32_t number) { return kAny && hits_[number].nearest.hit; };
+    uint32_t* const end = kAny ? std::remove_if(numbers, numbers + task.count, is_over) : numbers + task.count;
+    flights_.run(task.child, {numbers, end});
+    for (const uint32_t* i = numbers; i < end; ++i) {
+      rays_[*i].limit = is_over(*i) ? -kInfinity : hits_[*i].nearest.hit.t;
     }
   }
 
-  using Single = Walk<Tree, true, kAny, NoCounts>;
+  /// Narrower vectors compress by tables, which takes longer than lists save.
+  static constexpr uint32_t kFewest = hn::MaxLanes(Numbers()) == 16 ? 64 : ~0U;
   static constexpr uint32_t kLines = 4;  // of a node, and what most leaves have at most
   static constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -208,6 +220,7 @@ class Stream {
   uint32_t* const lists_;
   float* const entries_;    // of each ray of the list at hand into each child
   uint8_t* const entered_;  // which children that is, as bits
+  Flights flights_;
 };
 
 /// What a batch asks of a hit: the hit, or whether there is one.
@@ -223,7 +236,8 @@ Result result_of(const Hit& hit) {
 /// As many rays as memory holds at most. `single` traces one that streams cannot take.
 template <class Tree, class Result, class Single>
 void trace_some(const WideTracer<typename Tree::Layout>& tracer, std::span<const Ray> rays, std::span<Result> results,
-                StreamMemory& memory, const Single& single) {
+                StreamMemory& memory, typename RaysInFlight<Tree, !std::is_same_v<Result, Hit>>::Memory& flights,
+                const Single& single) {
   constexpr uint8_t kOctants = 8, kOut = kOctants;
   uint32_t counts[kOctants + 1] = {};
   for (size_t i = 0; i < rays.size(); ++i) {
@@ -248,13 +262,13 @@ void trace_some(const WideTracer<typename Tree::Layout>& tracer, std::span<const
     if (counts[octant] == 0) continue;
     const uint32_t* const end = memory.numbers() + places[octant];
     std::copy(end - counts[octant], end, memory.lists());
-    Stream<Tree, !std::is_same_v<Result, Hit>>(tracer, memory).run(counts[octant]);
+    Stream<Tree, !std::is_same_v<Result, Hit>>(tracer, memory, flights).run(counts[octant]);
   }
   for (size_t i = 0; i < rays.size(); ++i) {
     if (memory.octants()[i] == kOut) continue;
     StreamHit& hit = memory.hits()[i];
     if constexpr (std::is_same_v<Result, Hit>) {
-      Walk<Tree, true, false, NoCounts>::resolve(tracer, rays[i], hit.wide, hit.nearest);
+      LeafVisits<Tree, false, NoCounts>::resolve(tracer, rays[i], hit.wide, hit.nearest);
     }
     results[i] = result_of<Result>(hit.nearest.hit);
   }
@@ -264,17 +278,17 @@ void trace_some(const WideTracer<typename Tree::Layout>& tracer, std::span<const
 template <class Tree, class Result, class Single>
 bool trace_streams(const WideTracer<typename Tree::Layout>& tracer, std::span<const Ray> rays,
                    std::span<Result> results, const Single& single) {
-  constexpr size_t kFewest = 32;
-  // Narrower vectors compress by tables, which takes longer than streams save.
-  constexpr bool kCompresses = hn::MaxLanes(hn::CappedTag<uint32_t, 16>()) == 16;
-  if (!kCompresses || rays.size() < kFewest || tracer.layout.root.is_leaf() || tracer.layout.is_empty()) return false;
+  constexpr size_t kFewest = 16;
+  if (rays.size() < kFewest || tracer.layout.root.is_leaf() || tracer.layout.is_empty()) return false;
+  using Flights = typename RaysInFlight<Tree, !std::is_same_v<Result, Hit>>::Memory;
   StreamMemory memory;
-  if (!memory.is_there()) return false;
+  const std::unique_ptr<Flights> flights(new (std::nothrow) Flights);
+  if (!memory.is_there() || flights == nullptr) return false;
   const StandardFloat standard;
   constexpr size_t kMost = StreamMemory::kMostRays;
   for (size_t begin = 0; begin < rays.size(); begin += kMost) {
     const size_t count = std::min(kMost, rays.size() - begin);
-    trace_some<Tree>(tracer, rays.subspan(begin, count), results.subspan(begin, count), memory, single);
+    trace_some<Tree>(tracer, rays.subspan(begin, count), results.subspan(begin, count), memory, *flights, single);
   }
   return true;
 }
