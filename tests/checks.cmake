@@ -24,6 +24,6 @@ else()
 endif()
 kerf_check(format large ${CMAKE_CURRENT_SOURCE_DIR}/check_format.sh)
 if(NOT KERF_SANITIZE)  # nothing that the other builds do not have
-  kerf_check(tidy large ${CMAKE_CURRENT_SOURCE_DIR}/check_tidy.sh --thirds ${PROJECT_BINARY_DIR})
+  kerf_check(tidy large ${CMAKE_CURRENT_SOURCE_DIR}/check_tidy.sh --fifths ${PROJECT_BINARY_DIR})
   set_tests_properties(tidy PROPERTIES PROCESSORS 2 COST 700 TIMEOUT 2700)
 endif()

@@ -9,6 +9,7 @@ class Fault(NamedTuple):
     old: str
     new: str
     tests: str  # programs, any of which may notice
+    needs: str = ""  # what the processor has to offer for them to notice, as /proc/cpuinfo names it
 
 
 FAULTS = [
@@ -26,18 +27,18 @@ FAULTS = [
           "return is_negative != ((", "return is_negative == ((", "layouts_test"),
     Fault("rays of a stream that go other ways", "kerf/trace/wide_stream.h",
           "octant = static_cast<uint8_t>(ray.octant);", "octant = static_cast<uint8_t>(ray.octant & 3);",
-          "batch_test"),
-    Fault("entries of a stream's rays written over", "kerf/trace/wide_stream.h",
-          "end += list_entries(task, i, lists_ + end);", "list_entries(task, i, lists_ + end);", "batch_test"),
+          "batch_test", "avx512f"),
+    Fault("lists of a stream's rays written over", "kerf/trace/wide_stream.h",
+          "      end += made.count;\n", "", "batch_test", "avx512f"),
     Fault("lists of rays beyond their room", "kerf/trace/wide_stream.h",
           "StreamMemory::kPadding <= StreamMemory::kListed", "StreamMemory::kPadding <= 4U * StreamMemory::kListed",
-          "batch_test"),
+          "batch_test", "avx512f"),
     Fault("the other child that waits is lost", "kerf/trace/rays_in_flight.h",
-          "      old[-2] = other;\n", "", "batch_test"),
+          "old[-2] = other;", "old[-2] = ChildKey::end<Child>();", "batch_test"),
     Fault("rays in flight that never look at what waits", "kerf/trace/rays_in_flight.h",
-          "flight.top = top - none;", "flight.top = top;", "batch_test"),
+          "uint64_t waiting = old[-1];", "uint64_t waiting = ChildKey::end<Child>();", "batch_test"),
     Fault("children of a vector in the wrong place", "kerf/trace/child_keys.h",
-          "kMirrored.bits[others] >> (8 - kWidth)", "kMirrored.bits[others]", "batch_test"),
+          "kMirrored.bits[others] >> (8 - kWidth)", "kMirrored.bits[others]", "batch_test", "avx512f"),
     Fault("columns of hits from the start", "kerf/scene/scene_batch.cpp",
           "hits.set(first + i, found[i]);", "hits.set(first * 0 + i, found[i]);", "batch_test"),
     Fault("a skip pointer one node short", "kerf/layout/skip_pointer.cpp",

@@ -3,7 +3,7 @@
 
 Example: tests/mutants/run.py --build build/mutants
          tests/mutants/run.py --only "push dropped"
-         tests/mutants/run.py --thirds    one third of them, another one with each commit
+         tests/mutants/run.py --fifths    one fifth of them, another one with each commit
 
 A fault survives if all its test programs pass. Ends with 1 if one survives, no longer applies or does not compile.
 """
@@ -20,10 +20,17 @@ from faults import FAULTS
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
-def third():
-    """Which third of the faults is this commit's: all have their turn within three commits; None outside a checkout."""
+def fifth():
+    """Which fifth of the faults is this commit's: all have their turn within five commits; None outside a checkout."""
     counted = subprocess.run(["git", "rev-list", "--count", "HEAD"], cwd=ROOT, capture_output=True, check=False)
-    return int(counted.stdout) % 3 if counted.returncode == 0 else None
+    return int(counted.stdout) % 5 if counted.returncode == 0 else None
+
+
+def processor_flags():
+    try:
+        return set(pathlib.Path("/proc/cpuinfo").read_text().split())
+    except OSError:
+        return set()
 
 
 def copy_sources(to):
@@ -74,13 +81,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default=ROOT / "build" / "mutants", type=pathlib.Path, help="folder to work in")
     parser.add_argument("--only", default="", help="faults whose name contains this")
-    parser.add_argument("--thirds", action="store_true", help="one third, which follows from the number of commits")
+    parser.add_argument("--fifths", action="store_true", help="one fifth, which follows from the number of commits")
     arguments = parser.parse_args()
     work = arguments.build.resolve()
     sources, build = work / "source", work / "build"
-    chosen = [fault for fault in FAULTS if arguments.only in fault.name]
-    if arguments.thirds and third() is not None:
-        chosen = chosen[third()::3]
+    flags = processor_flags()
+    chosen = [fault for fault in FAULTS if arguments.only in fault.name and (not fault.needs or fault.needs in flags)]
+    if arguments.fifths and fifth() is not None:
+        chosen = chosen[fifth()::5]
     copy_sources(sources)
     # Little optimisation: what counts is compiling. Assertions stay off, so that the tests do the work.
     made = run(["cmake", "-S", sources, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
@@ -99,6 +107,9 @@ def main():
         verdict = judge(fault, sources, build)
         bad += not verdict.startswith("caught")
         print(f"{fault.name:<60} {verdict} ({time.monotonic() - start:.0f} s)", flush=True)
+    for fault in FAULTS:
+        if fault.needs and fault.needs not in flags:
+            print(f"{fault.name:<60} left out: it shows on processors with {fault.needs}")
     print(f"{len(chosen) - bad} of {len(chosen)} faults caught")
     return 1 if bad else 0
 
