@@ -36,9 +36,9 @@ struct PlainBoxTests {
   uint32_t row_x, row_y, row_z;
 
   explicit PlainBoxTests(const WideRay& ray)
-      : inverse_x(all(ray.inverse[0])),
-        inverse_y(all(ray.inverse[1])),
-        inverse_z(all(ray.inverse[2])),
+      : inverse_x(all(-ray.inverse[0])),
+        inverse_y(all(-ray.inverse[1])),
+        inverse_z(all(-ray.inverse[2])),
         origin_x(all(ray.origin[0])),
         origin_y(all(ray.origin[1])),
         origin_z(all(ray.origin[2])),
@@ -65,7 +65,7 @@ struct PlainBoxTests {
  private:
   static HWY_INLINE V all(float value) { return hn::Set(Lanes(), value); }
   static HWY_INLINE V at(const float* sides, V origin, V inverse) {
-    return hn::Mul(hn::Sub(hn::Load(Lanes(), sides), origin), inverse);
+    return hn::Mul(hn::Sub(origin, hn::Load(Lanes(), sides)), inverse);
   }
 };
 

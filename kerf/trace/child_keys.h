@@ -31,6 +31,35 @@ struct ChildKey {
   }
 };
 
+/// Where the nodes and leaves of a tree are in memory.
+template <class Tree>
+class ChildPlaces {
+  using Child = typename Tree::Child;
+
+ public:
+  explicit ChildPlaces(const typename Tree::Layout& layout)
+      : starts_{reinterpret_cast<const char*>(layout.nodes.data()),
+                reinterpret_cast<const char*>(layout.leaves.data())} {}
+
+  /// 1 for a leaf or the end, else 0; of a comparison compilers make a branch.
+  static HWY_INLINE uint32_t is_leaf(uint64_t key) {
+    constexpr uint32_t kKinds = (1U << Child::kKindBits) - 1;
+    return ((ChildKey::word(key) & kKinds) + kKinds) >> Child::kKindBits;
+  }
+
+  /// Asks memory for as much of it as a node has.
+  HWY_INLINE void ask(uint64_t key) const {
+    const uint32_t leaf = is_leaf(key);
+    const char* const from = starts_[leaf] + (size_t{Child{ChildKey::word(key)}.number()} << kShifts[leaf]);
+    for (size_t line = 0; line < sizeof(typename Tree::Node); line += 64) __builtin_prefetch(from + line);
+  }
+
+ private:
+  static constexpr uint32_t kShifts[2] = {std::countr_zero(sizeof(typename Tree::Node)),
+                                          std::countr_zero(sizeof(LeafUnit))};
+  const char* starts_[2];  // of nodes, of leaves
+};
+
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
 
 /// The keys of eight or four children, of which those whose bits are set are entered.

@@ -6,20 +6,20 @@
 class ExactTest {
  public:
   explicit ExactTest(const Ray& ray, const WideRay& wide)
-      : z_(static_cast<double>(ray.direction[wide.kz] + 0.0F)),
-        shear_x_(static_cast<double>(ray.direction[wide.kx] + 0.0F) / z_),
-        shear_y_(static_cast<double>(ray.direction[wide.ky] + 0.0F) / z_) {
-    origin_x_ = wide.origin[wide.kx];
-    origin_y_ = wide.origin[wide.ky];
-    origin_z_ = wide.origin[wide.kz];
+      : z_(static_cast<double>(ray.direction[wide.axes.kz] + 0.0F)),
+        shear_x_(static_cast<double>(ray.direction[wide.axes.kx] + 0.0F) / z_),
+        shear_y_(static_cast<double>(ray.direction[wide.axes.ky] + 0.0F) / z_) {
+    origin_x_ = wide.origin[wide.axes.kx];
+    origin_y_ = wide.origin[wide.axes.ky];
+    origin_z_ = wide.origin[wide.axes.kz];
   }
 
   template <class Leaf>
   HWY_INLINE bool hits(const Leaf& leaf, uint32_t i, const WideRay& ray, float limit, Crossing& crossing) const {
     Corners x, y, z;
-    load(leaf, ray.kx, i, x);
-    load(leaf, ray.ky, i, y);
-    load(leaf, ray.kz, i, z);
+    load(leaf, ray.axes.kx, i, x);
+    load(leaf, ray.axes.ky, i, y);
+    load(leaf, ray.axes.kz, i, z);
     z -= origin_z_;
     x = x - origin_x_ - shear_x_ * z;
     y = y - origin_y_ - shear_y_ * z;

@@ -14,10 +14,11 @@ struct SeenFrom {
 
   template <class D>
   HWY_INLINE SeenCorners<D> corners(D d, const float* xs, const float* ys, const float* zs) const {
-    const auto z = hn::Sub(hn::Set(d, ray.origin[ray.kz]), hn::LoadU(d, zs));
-    const auto x = hn::Sub(hn::Set(d, ray.origin[ray.kx]), hn::LoadU(d, xs));
-    const auto y = hn::Sub(hn::Set(d, ray.origin[ray.ky]), hn::LoadU(d, ys));
-    return {hn::NegMulAdd(hn::Set(d, ray.shear[ray.kx]), z, x), hn::NegMulAdd(hn::Set(d, ray.shear[ray.ky]), z, y), z};
+    const auto z = hn::Sub(hn::Set(d, ray.origin[ray.axes.kz]), hn::LoadU(d, zs));
+    const auto x = hn::Sub(hn::Set(d, ray.origin[ray.axes.kx]), hn::LoadU(d, xs));
+    const auto y = hn::Sub(hn::Set(d, ray.origin[ray.axes.ky]), hn::LoadU(d, ys));
+    return {hn::NegMulAdd(hn::Set(d, ray.shear[ray.axes.kx]), z, x),
+            hn::NegMulAdd(hn::Set(d, ray.shear[ray.axes.ky]), z, y), z};
   }
 };
 
@@ -33,6 +34,22 @@ struct Between {
   float most[2 * TriangleLeaf::kMost];
 };
 
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+constexpr int kMaxOfSizes = 0b1011;  // of vrangeps: the larger size, without its sign
+HWY_INLINE __m128 larger_size(__m128 a, __m128 b) { return _mm_range_ps(a, b, kMaxOfSizes); }
+HWY_INLINE __m256 larger_size(__m256 a, __m256 b) { return _mm256_range_ps(a, b, kMaxOfSizes); }
+HWY_INLINE __m512 larger_size(__m512 a, __m512 b) { return _mm512_range_ps(a, b, kMaxOfSizes); }
+template <class V>
+HWY_INLINE V largest_size(V a, V b, V c) {
+  return V{larger_size(larger_size(a.raw, b.raw), c.raw)};
+}
+#else
+template <class V>
+HWY_INLINE V largest_size(V a, V b, V c) {
+  return hn::Max(hn::Max(hn::Abs(a), hn::Abs(b)), hn::Abs(c));
+}
+#endif
+
 /// A vector of triangles and the ray's tests of them, in float with bounds on the errors.
 template <class D>
 class SeenTriangles {
@@ -46,13 +63,11 @@ class SeenTriangles {
     u_ = hn::MulSub(c.x, b.y, hn::Mul(c.y, b.x));
     v_ = hn::MulSub(a.x, c.y, hn::Mul(a.y, c.x));
     w_ = hn::MulSub(b.x, a.y, hn::Mul(b.y, a.x));
-    const auto sx = hn::Max(hn::Max(hn::Abs(a.x), hn::Abs(b.x)), hn::Abs(c.x));
-    const auto sy = hn::Max(hn::Max(hn::Abs(a.y), hn::Abs(b.y)), hn::Abs(c.y));
-    const auto s = hn::Max(sx, sy);
-    depth_ = hn::Max(hn::Max(hn::Abs(az_), hn::Abs(bz_)), hn::Abs(cz_));
+    const auto s = hn::Max(largest_size(a.x, b.x, c.x), largest_size(a.y, b.y, c.y));
+    depth_ = largest_size(az_, bz_, cz_);
     // Where a product overflows, this does, and nothing is left out: a fused operation would take one for infinite and
-    // the other as it is.
-    error_ = hn::MulAdd(hn::Mul(s, hn::Add(s, depth_)), hn::Set(d, 0x1p-19F), hn::Set(d, 0x1p-120F));
+    // the other as it is. The constant is for underflow, and for find().
+    error_ = hn::MulAdd(hn::Mul(s, hn::Add(s, depth_)), hn::Set(d, 0x1p-19F), hn::Set(d, 0x1p-60F));
     low_ = hn::Min(hn::Min(u_, v_), w_);
     high_ = hn::Max(hn::Max(u_, v_), w_);
   }
@@ -60,21 +75,21 @@ class SeenTriangles {
   /// Those that the ray may hit at any t, as bits; those left out it surely misses.
   HWY_INLINE uint32_t may_hit() const {
     // What is not a number counts for neither: Min and Max return one of their operands.
-    const auto outside = hn::And(hn::Lt(low_, hn::Neg(error_)), hn::Gt(high_, error_));
+    const auto outside = hn::Gt(hn::Min(hn::Neg(low_), high_), error_);
     return bits_of(D(), outside) ^ kAll;
   }
 
-  /// Where the ray surely hits those of which that can be told.
+  /// Where the ray, a usual one, surely hits those of which that can be told.
   ///
   /// With E the bound on the edge functions' error, A their sum and Z the largest depth: the weights of the corners,
   /// edge functions over A, are off by 6 E / A together, so the depth, a mean between the corners' depths, by 3 E / A
   /// of what lies between these; the roundings of depths, products, sums, quotient and t by 12 e Z, e = 2^-24. Bounds
-  /// used: 4 E / A, 2^-19 Z, and 2^-80 for underflow, while A is at least 2^-60. Overflow ends in an infinite t, or is
-  /// excluded by the limit on E.
+  /// used: 4 E / A, 2^-19 Z, and 2^-80 for underflow, while A is at least 3 E, which is 2^-60 at least. With corners
+  /// within 2^38 and the direction from 2^-40 to 2^38 only the bounds can overflow, and what is infinite is not sure.
   HWY_INLINE Found find(const WideRay& ray, uint32_t maybe, float limit, float* least, float* most) const {
     const D d;
-    const auto inverse_z = hn::Set(d, -ray.inverse[ray.kz]);  // corners are mirrored
-    const auto inside = hn::Gt(hn::Max(low_, hn::Neg(high_)), hn::Max(error_, hn::Set(d, 0x1p-60F)));
+    const auto inverse_z = hn::Set(d, -ray.inverse[ray.axes.kz]);  // corners are mirrored
+    const auto inside = hn::Gt(hn::Max(low_, hn::Neg(high_)), error_);
     const auto inverse = hn::Div(hn::Set(d, 1), hn::Add(hn::Add(u_, v_), w_));
     const auto z = hn::Mul(hn::MulAdd(u_, az_, hn::MulAdd(v_, bz_, hn::Mul(w_, cz_))), inverse);
     const auto between = hn::Sub(hn::Max(hn::Max(az_, bz_), cz_), hn::Min(hn::Min(az_, bz_), cz_));
@@ -82,15 +97,12 @@ class SeenTriangles {
     const auto off = hn::MulAdd(weights, between, hn::MulAdd(depth_, hn::Set(d, 0x1p-19F), hn::Set(d, 0x1p-80F)));
     const auto t = hn::Mul(z, inverse_z), t_off = hn::Mul(off, hn::Abs(inverse_z));
     const auto from = hn::Sub(t, t_off), to = hn::Add(t, t_off);
-    const auto largest = hn::Set(d, std::numeric_limits<float>::max());
-    const auto is_finite = hn::And(hn::Ge(from, hn::Neg(largest)), hn::Le(to, largest));
-    const auto known = hn::And(hn::And(inside, hn::Le(error_, hn::Set(d, 0x1p101F))), is_finite);
     const auto t_min = hn::Set(d, ray.t_min);
-    const auto beyond = hn::And(known, hn::Or(hn::Gt(from, hn::Set(d, limit)), hn::Lt(to, t_min)));
+    const auto beyond = hn::Or(hn::Gt(from, hn::Set(d, limit)), hn::Lt(to, t_min));
     hn::StoreU(from, d, least);
     hn::StoreU(to, d, most);
-    const uint32_t left = maybe & ~bits_of(d, beyond);
-    return {left, left & bits_of(d, hn::And(known, hn::Ge(from, t_min)))};
+    const uint32_t left = maybe & ~bits_of(d, hn::And(inside, beyond));
+    return {left, left & bits_of(d, hn::And(inside, hn::Ge(from, t_min)))};
   }
 
  private:
@@ -132,9 +144,9 @@ struct LeafTests {
   static HWY_INLINE uint32_t count(const TriangleLeaf& leaf) { return kLanes == TriangleLeaf::kMost ? 1 : leaf.count; }
 
   HWY_INLINE SeenTriangles<Lanes> see(const TriangleLeaf& leaf, uint32_t first) const {
-    const float* const xs = leaf.column(0, 0) + size_t{ray.kx} * leaf.count + first;
-    const float* const ys = leaf.column(0, 0) + size_t{ray.ky} * leaf.count + first;
-    const float* const zs = leaf.column(0, 0) + size_t{ray.kz} * leaf.count + first;
+    const float* const xs = leaf.column(0, 0) + size_t{ray.axes.kx} * leaf.count + first;
+    const float* const ys = leaf.column(0, 0) + size_t{ray.axes.ky} * leaf.count + first;
+    const float* const zs = leaf.column(0, 0) + size_t{ray.axes.kz} * leaf.count + first;
     const size_t next = size_t{3} * leaf.count;
     const SeenFrom from{ray};
     const Lanes d;

@@ -1,38 +1,63 @@
 // No include guard on purpose: a part of trace_wide.cpp, which includes it once for each instruction set, in
 // HWY_NAMESPACE.
 
+/// What a first look at a leaf came to.
+enum class Look {
+  kSettled,  ///< nothing is left to do there
+  kOver,     ///< nor anywhere else: any hit is enough
+  kUnsure,   ///< it is to be tested exactly
+};
+
 /// A ray's tests of leaves.
 template <class Tree, bool kAny, class Counts>
-class LeafVisits {
+struct LeafVisits {
   using Tracer = WideTracer<typename Tree::Layout>;
   using Child = typename Tree::Child;
   using Leaf = typename Tree::Leaf;
 
- public:
-  LeafVisits(const Tracer& tracer, const Ray& ray, const WideRay& wide, NearestHit& nearest, Counts& counts)
-      : tracer_(tracer), ray_(ray), wide_(wide), nearest_(nearest), counts_(counts) {}
+  const Tracer& tracer;
+  const Ray& ray;
+  const WideRay& wide;
+  NearestHit& nearest;
+  Counts& counts;
 
-  /// Whether the ray's way is over: any hit is enough.
-  HWY_INLINE bool test(Child leaf) {
-    if (leaf.kind() == Child::kSlots) return test_slots(tracer_, ray_, wide_, nearest_, counts_, leaf);
-    const Leaf triangles = tracer_.layout.triangles(leaf);
+  /// Without a call. `maybe` gets the triangles to be tested exactly. Nothing is sure of rays that are not usual.
+  template <bool kUsual>
+  HWY_INLINE Look look(Child leaf, uint32_t& maybe) const {
+    if (leaf.kind() == Child::kSlots) return Look::kUnsure;
+    const Leaf triangles = tracer.layout.triangles(leaf);
     if constexpr (Counts::kCounts) {
-      for (const LeafSlot& slot : tracer_.layout.slots(leaf)) counts_.count_primitives(std::span(&slot, 1));
+      for (const LeafSlot& slot : tracer.layout.slots(leaf)) counts.count_primitives(std::span(&slot, 1));
+    }
+    const typename Tree::Leaves leaves{wide};
+    if constexpr (!kUsual) {
+      maybe = leaves.may_hit(triangles);
+      return maybe == 0 ? Look::kSettled : Look::kUnsure;
     }
     Between between;
-    const Found found = typename Tree::Leaves{wide_}.find(triangles, nearest_.hit.t, between);
-    if (found.maybe == 0) return false;
-    if ((tracer_.shared_mask & ray_.mask) != 0) {
-      if constexpr (kAny) {
-        if (found.sure != 0) {
-          nearest_.hit.primitive = 0;  // some primitive
-          return true;
-        }
-      } else if (found.sure == found.maybe && take_nearest(leaf, found.sure, between)) {
-        return false;
-      }
+    const Found found = leaves.find(triangles, nearest.hit.t, between);
+    maybe = found.maybe;
+    if (found.maybe == 0) return Look::kSettled;
+    if ((tracer.shared_mask & ray.mask) == 0) return Look::kUnsure;
+    if constexpr (kAny) {
+      if (found.sure == 0) return Look::kUnsure;
+      nearest.hit.primitive = 0;  // some primitive
+      return Look::kOver;
     }
-    return test_triangles(tracer_, ray_, wide_, nearest_, triangles, found.maybe);
+    return found.sure == found.maybe && take_nearest(leaf, found.sure, between) ? Look::kSettled : Look::kUnsure;
+  }
+
+  /// What is left to do where look() is unsure. Whether the ray's way is over.
+  HWY_INLINE bool finish(Child leaf, uint32_t maybe) const {
+    if (leaf.kind() == Child::kSlots) return test_slots(tracer, ray, wide, nearest, counts, leaf);
+    return test_triangles(tracer, ray, wide, nearest, tracer.layout.triangles(leaf), maybe);
+  }
+
+  /// Both.
+  HWY_INLINE bool test(Child leaf) const {
+    uint32_t maybe = 0;
+    const Look seen = look<true>(leaf, maybe);
+    return seen == Look::kUnsure ? finish(leaf, maybe) : seen == Look::kOver;
   }
 
   /// Works the hit out that is to be, if any.
@@ -71,15 +96,15 @@ class LeafVisits {
 
  private:
   /// Of triangles that the ray surely hits. False if it cannot be told which hit is the nearest.
-  HWY_INLINE bool take_nearest(Child leaf, uint32_t sure, const Between& between) {
+  HWY_INLINE bool take_nearest(Child leaf, uint32_t sure, const Between& between) const {
     do {
       const auto i = static_cast<uint32_t>(std::countr_zero(sure));
-      if (between.most[i] < nearest_.least) {
-        nearest_.hit.t = between.most[i];
-        nearest_.least = between.least[i];
-        nearest_.leaf = leaf.word;
-        nearest_.number = i;
-      } else if (between.least[i] <= nearest_.hit.t) {
+      if (between.most[i] < nearest.least) {
+        nearest.hit.t = between.most[i];
+        nearest.least = between.least[i];
+        nearest.leaf = leaf.word;
+        nearest.number = i;
+      } else if (between.least[i] <= nearest.hit.t) {
         return false;
       }
       sure &= sure - 1;
@@ -97,10 +122,4 @@ class LeafVisits {
     nearest.least = nearest.hit.t;
     return false;
   }
-
-  const Tracer& tracer_;
-  const Ray& ray_;
-  const WideRay& wide_;
-  NearestHit& nearest_;
-  Counts& counts_;
 };

@@ -158,8 +158,8 @@ struct QuantisedLeafTests {
 
   template <class D>
   static HWY_INLINE SeenCorners<D> corners(D d, const WideRay& ray, const QuantisedLeaf& leaf, uint32_t first) {
-    return SeenFrom{ray}.corners(d, leaf.column(ray.kx) + first, leaf.column(ray.ky) + first,
-                                 leaf.column(ray.kz) + first);
+    return SeenFrom{ray}.corners(d, leaf.column(ray.axes.kx) + first, leaf.column(ray.axes.ky) + first,
+                                 leaf.column(ray.axes.kz) + first);
   }
 
   /// All corners, as many as lanes at most.

@@ -43,11 +43,7 @@ class RaysInFlight {
   };
 
   RaysInFlight(const Tracer& tracer, StreamHit* hits, Memory& memory)
-      : starts_{reinterpret_cast<const char*>(tracer.layout.nodes.data()),
-                reinterpret_cast<const char*>(tracer.layout.leaves.data())},
-        tracer_(tracer),
-        hits_(hits),
-        memory_(memory) {}
+      : places_(tracer.layout), tracer_(tracer), hits_(hits), memory_(memory) {}
 
   /// Rays by their numbers, from an inner node on.
   void run(Child from, std::span<const uint32_t> numbers) {
@@ -69,7 +65,7 @@ class RaysInFlight {
       for (uint32_t i = 0; i < leaves; ++i) {
         Flight* const flight = aside_[i];
         if (visit(*flight)) {
-          sort_in(flight, is_leaf(flight->current));
+          sort_in(flight, places_.is_leaf(flight->current));
         } else {
           start(reinterpret_cast<std::byte*>(flight));
         }
@@ -106,8 +102,8 @@ class RaysInFlight {
     const uint64_t next = taken ^ ((taken ^ waiting) & (uint64_t{0} - none));
     flight.top = top - none;
     flight.current = next;
-    ask(next);
-    return is_leaf(next) | (kAny ? 0 : ChildKey::is_beyond(next, limit));
+    places_.ask(next);
+    return places_.is_leaf(next) | (kAny ? 0 : ChildKey::is_beyond(next, limit));
   }
 
   /// What the ray has come to, if it is not too far. Whether the ray goes on.
@@ -118,34 +114,19 @@ class RaysInFlight {
       if (!child.is_leaf()) return true;  // a limit of minus zero is one that is_beyond() takes for less than zero
       StreamHit& hit = hits_[flight.number];
       NoCounts counts;
-      if (Visits(tracer_, *hit.ray, hit.wide, hit.nearest, counts).test(child)) return false;
+      if (Visits{tracer_, *hit.ray, hit.wide, hit.nearest, counts}.test(child)) return false;
       flight.limit = hit.nearest.hit.t;
     }
     do {
       flight.current = *--flight.top;
     } while (ChildKey::entry(flight.current) > flight.limit);
-    ask(flight.current);
+    places_.ask(flight.current);
     return true;
   }
 
   static HWY_INLINE Child child_of(uint64_t key) { return {ChildKey::word(key)}; }
 
-  /// 1 for a leaf or the end, else 0; of a comparison compilers make a branch.
-  static HWY_INLINE uint32_t is_leaf(uint64_t key) {
-    constexpr uint32_t kKinds = (1U << Child::kKindBits) - 1;
-    return (child_of(key).kind() + kKinds) >> Child::kKindBits;
-  }
-
-  /// Asks memory for what is at a child.
-  HWY_INLINE void ask(uint64_t key) const {
-    const uint32_t leaf = is_leaf(key);
-    const char* const from = starts_[leaf] + (size_t{child_of(key).number()} << kShifts[leaf]);
-    for (size_t line = 0; line < sizeof(typename Tree::Node); line += 64) __builtin_prefetch(from + line);
-  }
-
-  static constexpr uint32_t kShifts[2] = {std::countr_zero(sizeof(typename Tree::Node)),
-                                          std::countr_zero(sizeof(LeafUnit))};
-  const char* const starts_[2];  // of nodes, of leaves
+  const ChildPlaces<Tree> places_;
   const Tracer& tracer_;
   StreamHit* const hits_;
   Memory& memory_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 
 #include "kerf/base/box3.h"
 #include "kerf/base/float4.h"
@@ -28,52 +30,50 @@ namespace kerf {
 ///
 /// Triangles: the shear of PreparedRay in float, from one more rounding; see detail::may_hit_triangle().
 struct WideRay {
+  struct alignas(16) Axes {
+    uint32_t kx, ky, kz;  ///< as in PreparedRay
+  };
   Float4 inverse, inverse_near, inverse_far;  ///< the latter two: for the near and far sides of boxes
   Float4 origin, origin_near, origin_far;     ///< likewise
   Float4 shear;
-  uint32_t octant;      ///< a bit for each axis: 1 if boxes are entered at their upper side, else 0
-  uint32_t kx, ky, kz;  ///< as in PreparedRay
+  Axes axes;
+  uint32_t octant;  ///< a bit for each axis: 1 if boxes are entered at their upper side, else 0
   float t_min, t_max;
   float shift;  ///< of sides, in position
   float t_off;  ///< by which boxes are entered earlier and left later, besides
-  /// False where numbers are too large or too small for that, or t may be negative: then (b - origin_far_moved()) *
-  /// inverse is for the far sides and likewise for the near ones, which cannot go wrong, whatever the size.
+  /// False where numbers are so large or small that float arithmetic may overflow or lose digits, or t may be negative:
+  /// then (b - origin_far_moved()) * inverse is for the far sides and likewise for the near ones, which cannot go
+  /// wrong, whatever the size; and triangles are tested in double alone.
   bool is_usual;
   bool valid;  ///< as in PreparedRay
 
-  /// `largest_coordinate`: of the scene's bounds.
-  WideRay(const Ray& ray, float largest_coordinate) : t_min(ray.t_min), t_max(ray.t_max) {
+  /// `largest_coordinate`: of the scene's bounds. Most rays are usual and have no small component: what the others need
+  /// is elsewhere, so that the division need not wait for it.
+  [[gnu::always_inline]] WideRay(const Ray& ray, float largest_coordinate) : t_min(ray.t_min), t_max(ray.t_max) {
     const Float4 zero{};
-    const Float4 d = Float4{ray.direction.x, ray.direction.y, ray.direction.z, 0} + zero;
-    origin = Float4{ray.origin.x, ray.origin.y, ray.origin.z, 0} + zero;  // without minus zero
+    const Float4 d = first4(ray, offsetof(Ray, direction));  // and t_max, which nobody looks at
+    inverse = 1 / d;
+    origin = first4(ray, offsetof(Ray, origin)) + zero;  // without minus zero; and t_min
     const Float4 sizes = absolute(d), places = absolute(origin);
     const float longest_xy = std::max(sizes[0], sizes[1]), longest = std::max(longest_xy, sizes[2]);
+    const float shortest = std::min(std::min(sizes[0], sizes[1]), sizes[2]);
     const float farthest = std::max(std::max(places[0], places[1]), places[2]);
-    const Float4 no_numbers = (d + origin) * zero;  // not zero where one is not finite
-    valid = ((farthest <= kMaxCoordinate) & (longest <= 0x1p100F) & (longest >= 0x1p-100F) & (t_min <= t_max) &
-             (no_numbers[0] + no_numbers[1] + no_numbers[2] == 0)) != 0;
-    const auto y_is_larger = static_cast<uint32_t>(sizes[0] < sizes[1]);
-    const auto z_is_largest = static_cast<uint32_t>(longest_xy < sizes[2]);
-    kz = (y_is_larger & ~z_is_largest) | z_is_largest << 1;
-    kx = (0b001001U >> (2 * kz)) & 3;
-    ky = (0b010010U >> (2 * kz)) & 3;
+    const Float4 both = sizes + places;
+    const float sum = both[0] + both[1] + both[2];  // no number if one is none
     const float reach = largest_coordinate + 2 * farthest;
     shift = std::max(0x1p-20F * reach, 0x1p-148F);
-    const float least = 0x1p-30F * longest;
-    is_usual = reach >= 0x1p-60F && reach < 0x1p60F * least && longest <= 0x1p50F && t_min >= 0;
-    // Not a choice of two: the division would have to wait for it.
-    const auto invert = [&](float smallest) { inverse = 1 / with_signs(max(sizes, zero + smallest), d); };
-    invert(least);
-    if (!is_usual) [[unlikely]]
-      invert(kLeastInverted);
+    axes = kAxes[(sizes[0] < sizes[1] ? 1 : 0) + (longest_xy < sizes[2] ? 2 : 0)];
+    is_usual = valid =
+        sum <= 0x1p38F && reach <= 0x1p38F && reach >= 0x1p-60F && longest >= 0x1p-40F && t_min >= 0 && t_min <= t_max;
+    origin_near = origin_far = origin;
+    if (!is_usual || shortest < kFlat * longest) [[unlikely]]
+      set_rare(d, longest, farthest);
     inverse_near = inverse * (1 - 0x1p-21F);
     inverse_far = inverse * (1 + 0x1p-21F);
-    const Float4 moved = sizes < least ? with_signs(zero + shift, d) : zero;
-    origin_near = origin + moved;
-    origin_far = origin - moved;
-    shear = d * inverse[kz];
-    t_off = 0x1p-24F * reach * std::abs(inverse[kz]);
-    octant = (ray.direction.x < 0 ? 1U : 0U) | (ray.direction.y < 0 ? 2U : 0U) | (ray.direction.z < 0 ? 4U : 0U);
+    const float inverse_z = inverse[axes.kz];
+    shear = d * inverse_z;
+    t_off = 0x1p-24F * reach * std::abs(inverse_z);
+    octant = (d[0] < 0 ? 1U : 0U) | (d[1] < 0 ? 2U : 0U) | (d[2] < 0 ? 4U : 0U);
   }
 
   /// Where the near sides of an axis begin in [axis][upper][width]; the far ones begin at that ^ width.
@@ -102,7 +102,30 @@ struct WideRay {
   }
 
  private:
+  /// By the axis along which the direction is longest: 0; 1; 2, whether or not y is longer than x.
+  static constexpr Axes kAxes[4] = {{1, 2, 0}, {2, 0, 1}, {0, 1, 2}, {0, 1, 2}};
+  static constexpr float kFlat = 0x1p-30F;            // a component is small below that share of the largest
   static constexpr float kLeastInverted = 0x1p-126F;  // its inverse is finite
+
+  [[gnu::noinline]] void set_rare(Float4 d, float longest, float farthest) {
+    const Float4 zero{};
+    const Float4 sizes = absolute(d), from_zero = d + zero;  // without minus zero
+    const float least = is_usual ? kFlat * longest : kLeastInverted;
+    inverse = 1 / with_signs(max(sizes, zero + least), from_zero);
+    const Float4 moved = sizes < least ? with_signs(zero + shift, from_zero) : zero;
+    origin_near = origin + moved;
+    origin_far = origin - moved;
+    if (is_usual) return;
+    const Float4 no_numbers = (d + origin) * zero;  // not zero where one is not finite
+    valid = ((farthest <= kMaxCoordinate) & (longest <= 0x1p100F) & (longest >= 0x1p-100F) & (t_min <= t_max) &
+             (no_numbers[0] + no_numbers[1] + no_numbers[2] == 0)) != 0;
+  }
+
+  static Float4 first4(const Ray& ray, size_t offset) {
+    Float4 values;
+    std::memcpy(&values, reinterpret_cast<const char*>(&ray) + offset, sizeof values);
+    return values;
+  }
 
   using Bits [[gnu::vector_size(16)]] = int32_t;
   static constexpr int32_t kSizeBits = 0x7FFFFFFF;
