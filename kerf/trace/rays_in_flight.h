@@ -15,9 +15,10 @@ class RaysInFlight {
 
   static constexpr uint32_t kBottom = 2;
 
-  /// A ray on its way, about 4 KB, of which few touch more than 1 KB.
+  /// A ray on its way, about 4 KB, of which few touch more than a few lines. What box tests need is read anew from the
+  /// ray at each node: as registers filled they would be eight times as much to copy and to keep near.
   struct alignas(64) Flight {
-    Boxes boxes;
+    const WideRay* wide;
     float limit;
     uint32_t number;                                                    ///< of the ray
     uint64_t current;                                                   ///< key of where it is
@@ -25,7 +26,7 @@ class RaysInFlight {
     uint64_t waiting[kBottom + (kWidth - 1) * kMaxDepth + 2 * kWidth];  // a vector may be written beyond the top
 
     Flight(uint32_t ray_number, const StreamHit& hit, Child from)
-        : boxes(hit.wide),
+        : wide(&hit.wide),
           limit(hit.nearest.hit.t),
           number(ray_number),
           current(ChildKey::of(from.word, hit.wide.t_min)),
@@ -97,7 +98,7 @@ class RaysInFlight {
     }
     uint64_t* top = old;
     const auto& node = tracer_.layout.nodes[child_of(flight.current).number()];
-    const uint64_t taken = flight.boxes.template take<kAny>(node, limit, top);
+    const uint64_t taken = Boxes(*flight.wide).template take<kAny>(node, limit, top);
     const uint64_t none = taken == ChildKey::kNone ? 1 : 0;
     const uint64_t next = taken ^ ((taken ^ waiting) & (uint64_t{0} - none));
     flight.top = top - none;

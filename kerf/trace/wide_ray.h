@@ -62,7 +62,8 @@ struct WideRay {
     const float sum = both[0] + both[1] + both[2];  // no number if one is none
     const float reach = largest_coordinate + 2 * farthest;
     shift = std::max(0x1p-20F * reach, 0x1p-148F);
-    axes = kAxes[(sizes[0] < sizes[1] ? 1 : 0) + (longest_xy < sizes[2] ? 2 : 0)];
+    const Axes& chosen = kAxes[(sizes[0] < sizes[1] ? 1 : 0) + (longest_xy < sizes[2] ? 2 : 0)];
+    axes = chosen;
     is_usual = valid =
         sum <= 0x1p38F && reach <= 0x1p38F && reach >= 0x1p-60F && longest >= 0x1p-40F && t_min >= 0 && t_min <= t_max;
     origin_near = origin_far = origin;
@@ -70,10 +71,9 @@ struct WideRay {
       set_rare(d, longest, farthest);
     inverse_near = inverse * (1 - 0x1p-21F);
     inverse_far = inverse * (1 + 0x1p-21F);
-    const float inverse_z = inverse[axes.kz];
-    shear = d * inverse_z;
-    t_off = 0x1p-24F * reach * std::abs(inverse_z);
-    octant = (d[0] < 0 ? 1U : 0U) | (d[1] < 0 ? 2U : 0U) | (d[2] < 0 ? 4U : 0U);
+    shear = d * inverse[chosen.kz];
+    t_off = 0x1p-24F * reach * (1 / longest);
+    octant = signs(inverse);
   }
 
   /// Where the near sides of an axis begin in [axis][upper][width]; the far ones begin at that ^ width.
@@ -130,6 +130,14 @@ struct WideRay {
   using Bits [[gnu::vector_size(16)]] = int32_t;
   static constexpr int32_t kSizeBits = 0x7FFFFFFF;
 
+  /// Of x, y and z, as bits.
+  static uint32_t signs(Float4 a) {
+#ifdef __SSE__
+    return static_cast<uint32_t>(__builtin_ia32_movmskps(a)) & 7;
+#else
+    return (a[0] < 0 ? 1U : 0U) | (a[1] < 0 ? 2U : 0U) | (a[2] < 0 ? 4U : 0U);
+#endif
+  }
   static Float4 absolute(Float4 a) { return reinterpret_cast<Float4>(reinterpret_cast<Bits>(a) & kSizeBits); }
   /// `sizes` are not negative.
   static Float4 with_signs(Float4 sizes, Float4 of) {

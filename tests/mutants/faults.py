@@ -58,7 +58,7 @@ FAULTS = [
     Fault("triangles without area written as they are", "kerf/layout/triangle_leaf.cpp",
           "const bool is_point = is_degenerate(triangle);", "const bool is_point = false;", "wide_collapse_test"),
     Fault("a wide box test without its margin", "kerf/trace/wide_ray.h",
-          "t_off = 0x1p-24F * reach * std::abs(inverse_z);", "t_off = 0;", "wide_bvh_test"),
+          "t_off = 0x1p-24F * reach * (1 / longest);", "t_off = 0;", "wide_bvh_test"),
     Fault("flat axes not moved", "kerf/trace/wide_ray.h",
           "const Float4 moved = sizes < least ? with_signs(zero + shift, from_zero) : zero;", "const Float4 moved = zero;",
           "wide_bvh_test nasty_test"),
