@@ -32,7 +32,7 @@ struct QuantisedBoxTests {
   V inverse_x, inverse_y, inverse_z;
   V near_x, near_y, near_z, far_x, far_y, far_z;  ///< as in BoxTests
   V t_min;
-  uint32_t row_x, row_y, row_z;  ///< where a node's near sides begin; the far ones begin at that ^ kWidth
+  const SideRows& rows;
 
   explicit QuantisedBoxTests(const WideRay& ray)
       : inverse_x(all(ray.inverse[0])),
@@ -45,9 +45,7 @@ struct QuantisedBoxTests {
         far_y(all((kFused ? ray.far_offset() : ray.origin_far_moved())[1])),
         far_z(all((kFused ? ray.far_offset() : ray.origin_far_moved())[2])),
         t_min(all(ray.t_min)),
-        row_x((ray.octant & 1) * kWidth),
-        row_y((ray.octant >> 1 & 1) * kWidth),
-        row_z((ray.octant >> 2 & 1) * kWidth) {}
+        rows(kSideRows<kWidth, 0>.by_octant[ray.octant]) {}
 
   /// As of BoxTests.
   HWY_INLINE uint32_t enter(const QuantisedNode& node, float limit, float* entry) const {
@@ -89,9 +87,9 @@ struct QuantisedBoxTests {
     const Axis<1> y(node, inverse_y, near_y, far_y);
     const Axis<2> z(node, inverse_z, near_z, far_z);
     for (uint32_t i = 0; i < kWidth; i += hn::MaxLanes(d)) {
-      const auto x0 = x.near(sides + row_x + i), x1 = x.far(sides + (row_x ^ kWidth) + i);
-      const auto y0 = y.near(sides + row_y + i), y1 = y.far(sides + (row_y ^ kWidth) + i);
-      const auto z0 = z.near(sides + row_z + i), z1 = z.far(sides + (row_z ^ kWidth) + i);
+      const auto x0 = x.near(sides + rows.near[0] + i), x1 = x.far(sides + rows.far[0] + i);
+      const auto y0 = y.near(sides + rows.near[1] + i), y1 = y.far(sides + rows.far[1] + i);
+      const auto z0 = z.near(sides + rows.near[2] + i), z1 = z.far(sides + rows.far[2] + i);
       const auto near = hn::Max(hn::Max(x0, y0), hn::Max(z0, t_min));
       const auto far = hn::Min(hn::Min(x1, y1), hn::Min(z1, hn::Set(d, limit)));
       f(i, near, hn::Le(near, far));

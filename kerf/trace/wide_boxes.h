@@ -11,14 +11,12 @@ struct BoxTests {
   V inverse_near_x, inverse_near_y, inverse_near_z, inverse_far_x, inverse_far_y, inverse_far_z;
   V t_off;  ///< by which the near sides are nearer and the far ones farther; nothing where the origin is moved by all
   V t_min;
-  uint32_t row_x, row_y, row_z;  ///< where a node's near sides begin; the far ones begin at that ^ kWidth
+  const SideRows& rows;
 
   explicit BoxTests(const WideRay& ray)
       : t_off(all(kUsual ? ray.t_off : 0)),
         t_min(all(ray.t_min)),
-        row_x(ray.row(0, kWidth)),
-        row_y(ray.row(1, kWidth)),
-        row_z(ray.row(2, kWidth)) {
+        rows(kSideRows<kWidth, 2>.by_octant[ray.octant]) {
     set(kUsual ? ray.origin_near : ray.origin_near_moved(), near_x, near_y, near_z);
     set(kUsual ? ray.origin_far : ray.origin_far_moved(), far_x, far_y, far_z);
     set(kUsual ? ray.inverse_near : ray.inverse, inverse_near_x, inverse_near_y, inverse_near_z);
@@ -61,12 +59,12 @@ struct BoxTests {
     const Lanes d;
     const float* const sides = &node.sides[0][0][0];
     for (uint32_t i = 0; i < kWidth; i += hn::MaxLanes(d)) {
-      const auto x0 = near_t(sides + row_x + i, near_x, inverse_near_x),
-                 x1 = far_t(sides + (row_x ^ kWidth) + i, far_x, inverse_far_x);
-      const auto y0 = near_t(sides + row_y + i, near_y, inverse_near_y),
-                 y1 = far_t(sides + (row_y ^ kWidth) + i, far_y, inverse_far_y);
-      const auto z0 = near_t(sides + row_z + i, near_z, inverse_near_z),
-                 z1 = far_t(sides + (row_z ^ kWidth) + i, far_z, inverse_far_z);
+      const auto x0 = near_t(sides + rows.near[0] + i, near_x, inverse_near_x),
+                 x1 = far_t(sides + rows.far[0] + i, far_x, inverse_far_x);
+      const auto y0 = near_t(sides + rows.near[1] + i, near_y, inverse_near_y),
+                 y1 = far_t(sides + rows.far[1] + i, far_y, inverse_far_y);
+      const auto z0 = near_t(sides + rows.near[2] + i, near_z, inverse_near_z),
+                 z1 = far_t(sides + rows.far[2] + i, far_z, inverse_far_z);
       const auto near = hn::Max(hn::Max(x0, y0), hn::Max(z0, t_min));
       const auto far = hn::Min(hn::Min(x1, y1), hn::Min(z1, hn::Set(d, limit)));
       f(i, near, hn::Le(near, far));

@@ -76,9 +76,6 @@ struct WideRay {
     octant = signs(inverse);
   }
 
-  /// Where the near sides of an axis begin in [axis][upper][width]; the far ones begin at that ^ width.
-  uint32_t row(uint32_t axis, uint32_t width) const { return (2 * axis + (octant >> axis & 1)) * width; }
-
   /// What is added to b * inverse.
   Float4 near_offset() const { return -(origin * inverse + absolute(inverse) * shift); }
   Float4 far_offset() const { return absolute(inverse) * shift - origin * inverse; }
@@ -144,5 +141,27 @@ struct WideRay {
     return reinterpret_cast<Float4>(reinterpret_cast<Bits>(sizes) | (reinterpret_cast<Bits>(of) & ~kSizeBits));
   }
 };
+
+/// Where rows of a node's sides begin, in numbers: by axis, of those at which a ray enters boxes and of those at which it
+/// leaves them. Looked up by WideRay::octant, in a fifth of the instructions that working them out takes.
+struct SideRows {
+  size_t near[3], far[3];
+};
+template <uint32_t kWidth, uint32_t kRowsOfAxis>
+struct SideRowsOf {
+  SideRows by_octant[8];
+
+  constexpr SideRowsOf() : by_octant() {
+    for (uint32_t octant = 0; octant < 8; ++octant) {
+      for (uint32_t axis = 0; axis < 3; ++axis) {
+        const uint32_t first = kRowsOfAxis * axis, upper = octant >> axis & 1;
+        by_octant[octant].near[axis] = size_t{first + upper} * kWidth;
+        by_octant[octant].far[axis] = size_t{first + 1 - upper} * kWidth;
+      }
+    }
+  }
+};
+template <uint32_t kWidth, uint32_t kRowsOfAxis>
+inline constexpr SideRowsOf<kWidth, kRowsOfAxis> kSideRows;
 
 }  // namespace kerf
