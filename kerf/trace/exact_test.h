@@ -14,44 +14,62 @@ class ExactTest {
     origin_z_ = wide.origin[wide.axes.kz];
   }
 
+  /// Whether it is hit at most at limit, and where.
   template <class Leaf>
   HWY_INLINE bool hits(const Leaf& leaf, uint32_t i, const WideRay& ray, float limit, Crossing& crossing) const {
-    Corners x, y, z;
-    load(leaf, ray.axes.kx, i, x);
-    load(leaf, ray.axes.ky, i, y);
-    load(leaf, ray.axes.kz, i, z);
-    z -= origin_z_;
-    x = x - origin_x_ - shear_x_ * z;
-    y = y - origin_y_ - shear_y_ * z;
-    const Corners x_cab = __builtin_shufflevector(x, x, 2, 0, 1, 3), y_cab = __builtin_shufflevector(y, y, 2, 0, 1, 3);
-    const Corners x_bca = __builtin_shufflevector(x, x, 1, 2, 0, 3), y_bca = __builtin_shufflevector(y, y, 1, 2, 0, 3);
-    const Corners edges = x_cab * y_bca - y_cab * x_bca;
-    const double u = edges[0], v = edges[1], w = edges[2];
+    const Seen seen = see(leaf, i, ray);
+    const double u = seen.edges[0], v = seen.edges[1], w = seen.edges[2];
     if (std::min(std::min(u, v), w) < 0 && std::max(std::max(u, v), w) > 0) return false;
-    const double area = u + v + w;
-    if (area == 0) return false;
-    const Corners depths = edges * z;
-    const double t = (depths[0] + depths[1] + depths[2]) / (area * z_);
-    crossing.t = without_minus_zero(static_cast<float>(t));
-    if (!(crossing.t >= ray.t_min && crossing.t <= limit && std::isfinite(crossing.t))) return false;
-    crossing.u = without_minus_zero(static_cast<float>(v / area));
-    crossing.v = without_minus_zero(static_cast<float>(w / area));
-    return true;
+    if (u + v + w == 0) return false;
+    crossing = crossing_of(seen);
+    return crossing.t >= ray.t_min && crossing.t <= limit && std::isfinite(crossing.t);
+  }
+
+  /// Of one that is known to be hit.
+  template <class Leaf>
+  HWY_INLINE Crossing crossing(const Leaf& leaf, uint32_t i, const WideRay& ray) const {
+    return crossing_of(see(leaf, i, ray));
   }
 
  private:
   using Corners [[gnu::vector_size(32)]] = double;
 
-  static HWY_INLINE void load(const TriangleLeaf& leaf, uint32_t axis, uint32_t i, Corners& to) {
+  /// A triangle as the ray sees it.
+  struct Seen {
+    Corners edges;  // u, v and w
+    Corners z;
+  };
+
+  template <class Leaf>
+  HWY_INLINE Seen see(const Leaf& leaf, uint32_t i, const WideRay& ray) const {
+    const Corners z = corners(leaf, ray.axes.kz, i) - origin_z_;
+    const Corners x = corners(leaf, ray.axes.kx, i) - origin_x_ - shear_x_ * z;
+    const Corners y = corners(leaf, ray.axes.ky, i) - origin_y_ - shear_y_ * z;
+    const Corners x_cab = __builtin_shufflevector(x, x, 2, 0, 1, 3), y_cab = __builtin_shufflevector(y, y, 2, 0, 1, 3);
+    const Corners x_bca = __builtin_shufflevector(x, x, 1, 2, 0, 3), y_bca = __builtin_shufflevector(y, y, 1, 2, 0, 3);
+    return {x_cab * y_bca - y_cab * x_bca, z};
+  }
+
+  HWY_INLINE Crossing crossing_of(const Seen& seen) const {
+    const double v = seen.edges[1], w = seen.edges[2], area = seen.edges[0] + v + w;
+    const Corners depths = seen.edges * seen.z;
+    const double t = (depths[0] + depths[1] + depths[2]) / (area * z_);
+    return {without_minus_zero(static_cast<float>(t)), without_minus_zero(static_cast<float>(v / area)),
+            without_minus_zero(static_cast<float>(w / area))};
+  }
+
+  static HWY_INLINE Corners corners(const TriangleLeaf& leaf, uint32_t axis, uint32_t i) {
     const float* const first = leaf.column(0, axis) + i;
     const size_t next = size_t{3} * leaf.count;
-    to = Corners{first[0], first[next], first[2 * next], 0};
+    return __builtin_convertvector((Float4{first[0], first[next], first[2 * next], 0}), Corners);
   }
-  static HWY_INLINE void load(const QuantisedLeaf& leaf, uint32_t axis, uint32_t i, Corners& to) {
+  static HWY_INLINE Corners corners(const QuantisedLeaf& leaf, uint32_t axis, uint32_t i) {
     const float* const column = leaf.column(axis);
     const uint32_t word = leaf.word(i);
-    to = Corners{column[QuantisedLeaf::corner_number(word, 0)], column[QuantisedLeaf::corner_number(word, 1)],
-                 column[QuantisedLeaf::corner_number(word, 2)], 0};
+    return __builtin_convertvector(
+        (Float4{column[QuantisedLeaf::corner_number(word, 0)], column[QuantisedLeaf::corner_number(word, 1)],
+                column[QuantisedLeaf::corner_number(word, 2)], 0}),
+        Corners);
   }
 
   double z_, shear_x_, shear_y_, origin_x_, origin_y_, origin_z_;

@@ -65,10 +65,8 @@ struct LeafVisits {
     if (nearest.leaf == 0) return;
     const Leaf triangles = tracer.layout.triangles(Child{nearest.leaf});
     const LeafSlot slot = triangles.slot(nearest.number);
-    Crossing crossing;
-    [[maybe_unused]] const bool is_hit =
-        ExactTest(ray, wide).hits(triangles, nearest.number, wide, nearest.hit.t, crossing);
-    assert(is_hit && crossing.t >= nearest.least);
+    const Crossing crossing = ExactTest(ray, wide).crossing(triangles, nearest.number, wide);
+    assert(crossing.t >= nearest.least && crossing.t <= nearest.hit.t);
     nearest.hit = {crossing.t, crossing.u, crossing.v, slot.primitive, slot.geometry(), kNone};
     nearest.least = crossing.t;
     nearest.leaf = 0;
@@ -78,6 +76,12 @@ struct LeafVisits {
   static HWY_NOINLINE bool test_triangles(const Tracer& tracer, const Ray& ray, const WideRay& wide,
                                           NearestHit& nearest, const Leaf& triangles, uint32_t found) {
     resolve(tracer, ray, wide, nearest);
+    return test_settled(tracer, ray, wide, nearest, triangles, found);
+  }
+
+  /// The same where no hit is to be worked out yet, without a call.
+  static HWY_INLINE bool test_settled(const Tracer& tracer, const Ray& ray, const WideRay& wide, NearestHit& nearest,
+                                      const Leaf& triangles, uint32_t found) {
     const ExactTest exact(ray, wide);
     for (; found != 0; found &= found - 1) {
       const auto i = static_cast<uint32_t>(std::countr_zero(found));

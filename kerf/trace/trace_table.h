@@ -65,6 +65,30 @@ decltype(auto) tracer_at(const void* data) {
   }
 }
 
+/// A tracer may have the two queries of one ray as plain functions itself, which saves a call.
+template <class Tracer>
+constexpr auto closest_of() -> Hit (*)(const void*, const Ray&) {
+  if constexpr (requires { Tracer::closest_hit; }) {
+    return Tracer::closest_hit;
+  } else {
+    return [](const void* data, const Ray& ray) {
+      NoCounts counts;
+      return tracer_at<Tracer>(data).template trace<false>(ray, counts);
+    };
+  }
+}
+template <class Tracer>
+constexpr auto any_of() -> bool (*)(const void*, const Ray&) {
+  if constexpr (requires { Tracer::any_hit; }) {
+    return Tracer::any_hit;
+  } else {
+    return [](const void* data, const Ray& ray) {
+      NoCounts counts;
+      return static_cast<bool>(tracer_at<Tracer>(data).template trace<true>(ray, counts));
+    };
+  }
+}
+
 /// A tracer that does better with many rays at once has `template <class Counts> void trace_batch(std::span<const Ray>,
 /// std::span<Result>, Counts&) const`, where Result is Hit for the closest or uint8_t for any, or both.
 template <class Tracer, class Result, class Counts>
@@ -84,14 +108,8 @@ void trace_batch(const Tracer& tracer, std::span<const Ray> rays, std::span<Resu
 /// which for kAny may return any hit.
 template <class Tracer>
 inline constexpr TraceTable kTraceTable = {
-    [](const void* data, const Ray& ray) {
-      NoCounts counts;
-      return detail::tracer_at<Tracer>(data).template trace<false>(ray, counts);
-    },
-    [](const void* data, const Ray& ray) {
-      NoCounts counts;
-      return static_cast<bool>(detail::tracer_at<Tracer>(data).template trace<true>(ray, counts));
-    },
+    detail::closest_of<Tracer>(),
+    detail::any_of<Tracer>(),
     [](const void* data, const Ray& ray, TraceCounts& counts) {
       return detail::tracer_at<Tracer>(data).template trace<false>(ray, counts);
     },

@@ -87,8 +87,22 @@ struct Kernel {
 
   static Kernel at(const void* data) { return {*static_cast<const Tracer*>(data)}; }
 
+  static Hit closest_hit(const void* data, const Ray& ray) {
+    NoCounts counts;
+    return at(data).template go<false>(ray, counts);
+  }
+  static bool any_hit(const void* data, const Ray& ray) {
+    NoCounts counts;
+    return static_cast<bool>(at(data).template go<true>(ray, counts));
+  }
+
   template <bool kAny, class Counts>
   Hit trace(const Ray& ray, Counts& counts) const {
+    return go<kAny>(ray, counts);
+  }
+
+  template <bool kAny, class Counts>
+  HWY_INLINE Hit go(const Ray& ray, Counts& counts) const {
     const StandardFloat standard;
     if (tracer.layout.is_empty()) return {};
     const WideRay wide(ray, tracer.largest_coordinate);

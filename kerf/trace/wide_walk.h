@@ -31,7 +31,7 @@ class Walk {
  private:
   /// On to the end or to a leaf that is to be tested exactly. Calls nothing, so that what nodes and leaves need of the
   /// ray stays in registers.
-  HWY_NOINLINE uint64_t go(uint64_t current) {
+  HWY_INLINE uint64_t go(uint64_t current) {
     const Node* const nodes = visits_.tracer.layout.nodes.data();
     const typename Tree::template Boxes<kUsual> boxes(visits_.wide);
     const ChildPlaces<Tree> places(visits_.tracer.layout);
@@ -57,8 +57,13 @@ class Walk {
       const Look seen = visits_.template look<kUsual>(leaf, maybe_);
       if (kAny && seen == Look::kOver) return ChildKey::end<Child>();
       if (seen == Look::kUnsure) {
-        top_ = top;
-        return current;
+        if (leaf.kind() == Child::kSlots || visits_.nearest.leaf != 0) {
+          top_ = top;
+          return current;
+        }
+        if (Visits::test_settled(visits_.tracer, visits_.ray, visits_.wide, visits_.nearest,
+                                 visits_.tracer.layout.triangles(leaf), maybe_))
+          return ChildKey::end<Child>();
       }
       limit = visits_.nearest.hit.t;
       current = next(top, limit);
