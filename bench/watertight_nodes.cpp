@@ -33,7 +33,7 @@ struct PlainBoxTests {
   static_assert(hn::MaxLanes(Lanes()) == kWidth);
 
   V inverse_x, inverse_y, inverse_z, origin_x, origin_y, origin_z, t_min;
-  uint32_t row_x, row_y, row_z;
+  const SideRows& rows;
 
   explicit PlainBoxTests(const WideRay& ray)
       : inverse_x(all(-ray.inverse[0])),
@@ -43,23 +43,21 @@ struct PlainBoxTests {
         origin_y(all(ray.origin[1])),
         origin_z(all(ray.origin[2])),
         t_min(all(ray.t_min)),
-        row_x(ray.row(0, kWidth)),
-        row_y(ray.row(1, kWidth)),
-        row_z(ray.row(2, kWidth)) {}
+        rows(kSideRows<kWidth, 2>.by_octant[ray.octant]) {}
 
   HWY_INLINE uint32_t enter(const WideNode<kWidth>& node, float limit, float* entry) const {
     const Lanes d;
     const float* const sides = &node.sides[0][0][0];
-    const auto x0 = at(sides + row_x, origin_x, inverse_x);
-    const auto x1 = at(sides + (row_x ^ kWidth), origin_x, inverse_x);
-    const auto y0 = at(sides + row_y, origin_y, inverse_y);
-    const auto y1 = at(sides + (row_y ^ kWidth), origin_y, inverse_y);
-    const auto z0 = at(sides + row_z, origin_z, inverse_z);
-    const auto z1 = at(sides + (row_z ^ kWidth), origin_z, inverse_z);
-    const auto near = hn::Max(hn::Max(x0, y0), hn::Max(z0, t_min));
-    const auto far = hn::Min(hn::Min(x1, y1), hn::Min(z1, hn::Set(d, limit)));
+    const auto x0 = at(sides + rows.near[0], origin_x, inverse_x);
+    const auto x1 = at(sides + rows.far[0], origin_x, inverse_x);
+    const auto y0 = at(sides + rows.near[1], origin_y, inverse_y);
+    const auto y1 = at(sides + rows.far[1], origin_y, inverse_y);
+    const auto z0 = at(sides + rows.near[2], origin_z, inverse_z);
+    const auto z1 = at(sides + rows.far[2], origin_z, inverse_z);
+    V near;
+    const uint32_t entered = overlap<true>(d, {x0, y0, z0, t_min}, {x1, y1, z1, hn::Set(d, limit)}, near);
     hn::Store(near, d, entry);
-    return bits_of(d, hn::Le(near, far));
+    return entered;
   }
 
  private:

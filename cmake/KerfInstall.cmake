@@ -17,7 +17,7 @@ function(kerf_install target set)
     install(DIRECTORY kerf/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kerf FILES_MATCHING PATTERN "*.h"
       PATTERN simd.h EXCLUDE PATTERN wide_boxes.h EXCLUDE PATTERN quantised_boxes.h EXCLUDE PATTERN leaf_tests.h EXCLUDE
       PATTERN exact_test.h EXCLUDE PATTERN wide_stream.h EXCLUDE PATTERN child_keys.h EXCLUDE
-      PATTERN leaf_visits.h EXCLUDE PATTERN rays_in_flight.h EXCLUDE PATTERN wide_walk.h EXCLUDE
+      PATTERN box_overlap.h EXCLUDE PATTERN leaf_visits.h EXCLUDE PATTERN rays_in_flight.h EXCLUDE PATTERN wide_walk.h EXCLUDE
       PATTERN embree_calls.h EXCLUDE PATTERN embree_pass.h EXCLUDE
       REGEX "kerf/(io/[a-z]+|study/report)$" EXCLUDE)
   endforeach()

@@ -53,23 +53,29 @@ class ExactTest {
   HWY_INLINE Crossing crossing_of(const Seen& seen) const {
     const double v = seen.edges[1], w = seen.edges[2], area = seen.edges[0] + v + w;
     const Corners depths = seen.edges * seen.z;
-    const double t = (depths[0] + depths[1] + depths[2]) / (area * z_);
-    return {without_minus_zero(static_cast<float>(t)), without_minus_zero(static_cast<float>(v / area)),
-            without_minus_zero(static_cast<float>(w / area))};
+    const Corners shares = Corners{depths[0] + depths[1] + depths[2], v, w, 0} / Corners{area * z_, area, area, 1};
+    return {without_minus_zero(static_cast<float>(shares[0])), without_minus_zero(static_cast<float>(shares[1])),
+            without_minus_zero(static_cast<float>(shares[2]))};
   }
 
+  static HWY_INLINE Corners to_double(Float4 a) {
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
+    return _mm256_cvtps_pd(a);
+#else
+    return __builtin_convertvector(a, Corners);
+#endif
+  }
   static HWY_INLINE Corners corners(const TriangleLeaf& leaf, uint32_t axis, uint32_t i) {
     const float* const first = leaf.column(0, axis) + i;
     const size_t next = size_t{3} * leaf.count;
-    return __builtin_convertvector((Float4{first[0], first[next], first[2 * next], 0}), Corners);
+    return to_double(Float4{first[0], first[next], first[2 * next], 0});
   }
   static HWY_INLINE Corners corners(const QuantisedLeaf& leaf, uint32_t axis, uint32_t i) {
     const float* const column = leaf.column(axis);
     const uint32_t word = leaf.word(i);
-    return __builtin_convertvector(
-        (Float4{column[QuantisedLeaf::corner_number(word, 0)], column[QuantisedLeaf::corner_number(word, 1)],
-                column[QuantisedLeaf::corner_number(word, 2)], 0}),
-        Corners);
+    return to_double(Float4{column[QuantisedLeaf::corner_number(word, 0)],
+                            column[QuantisedLeaf::corner_number(word, 1)],
+                            column[QuantisedLeaf::corner_number(word, 2)], 0});
   }
 
   double z_, shear_x_, shear_y_, origin_x_, origin_y_, origin_z_;

@@ -50,9 +50,9 @@ struct QuantisedBoxTests {
   /// As of BoxTests.
   HWY_INLINE uint32_t enter(const QuantisedNode& node, float limit, float* entry) const {
     uint32_t entered = 0;
-    test(node, limit, [&](uint32_t i, V near, hn::Mask<Lanes> is_entered) {
+    test(node, limit, [&](uint32_t i, V near, uint32_t some) {
       hn::Store(near, Lanes(), entry + i);
-      entered |= bits_of(Lanes(), is_entered) << i;
+      entered |= some << i;
     });
     return entered & places(node);
   }
@@ -61,9 +61,8 @@ struct QuantisedBoxTests {
   HWY_INLINE uint64_t take(const QuantisedNode& node, float limit, uint64_t*& top) const {
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
     uint64_t taken = 0;
-    test(node, limit, [&](uint32_t, V near, hn::Mask<Lanes> is_entered) {
-      const uint32_t entered = bits_of(Lanes(), is_entered) & places(node);
-      const VectorKeys<kWidth> keys(&node.child[0].word, near, entered);
+    test(node, limit, [&](uint32_t, V near, uint32_t some) {
+      const VectorKeys<kWidth> keys(&node.child[0].word, near, some & places(node));
       taken = kAny ? keys.take_first(&node.child[0].word, top) : keys.take_nearest(top);
     });
     return taken;
@@ -90,9 +89,9 @@ struct QuantisedBoxTests {
       const auto x0 = x.near(sides + rows.near[0] + i), x1 = x.far(sides + rows.far[0] + i);
       const auto y0 = y.near(sides + rows.near[1] + i), y1 = y.far(sides + rows.far[1] + i);
       const auto z0 = z.near(sides + rows.near[2] + i), z1 = z.far(sides + rows.far[2] + i);
-      const auto near = hn::Max(hn::Max(x0, y0), hn::Max(z0, t_min));
-      const auto far = hn::Min(hn::Min(x1, y1), hn::Min(z1, hn::Set(d, limit)));
-      f(i, near, hn::Le(near, far));
+      V near;
+      const uint32_t entered = overlap<kFused>(d, {x0, y0, z0, t_min}, {x1, y1, z1, hn::Set(d, limit)}, near);
+      f(i, near, entered);
     }
   }
 

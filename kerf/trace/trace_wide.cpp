@@ -32,6 +32,7 @@ HWY_INLINE uint32_t bits_of(D d, M mask) {
   return bits[0];
 }
 
+#include "kerf/trace/box_overlap.h"
 #include "kerf/trace/child_keys.h"
 #include "kerf/trace/exact_test.h"
 #include "kerf/trace/leaf_tests.h"

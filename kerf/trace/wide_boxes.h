@@ -14,9 +14,7 @@ struct BoxTests {
   const SideRows& rows;
 
   explicit BoxTests(const WideRay& ray)
-      : t_off(all(kUsual ? ray.t_off : 0)),
-        t_min(all(ray.t_min)),
-        rows(kSideRows<kWidth, 2>.by_octant[ray.octant]) {
+      : t_off(all(kUsual ? ray.t_off : 0)), t_min(all(ray.t_min)), rows(kSideRows<kWidth, 2>.by_octant[ray.octant]) {
     set(kUsual ? ray.origin_near : ray.origin_near_moved(), near_x, near_y, near_z);
     set(kUsual ? ray.origin_far : ray.origin_far_moved(), far_x, far_y, far_z);
     set(kUsual ? ray.inverse_near : ray.inverse, inverse_near_x, inverse_near_y, inverse_near_z);
@@ -26,9 +24,9 @@ struct BoxTests {
   /// Which children the ray enters within [t_min, limit], as bits, and where.
   HWY_INLINE uint32_t enter(const WideNode<kWidth>& node, float limit, float* entry) const {
     uint32_t entered = 0;
-    test(node, limit, [&](uint32_t i, V near, hn::Mask<Lanes> is_entered) {
+    test(node, limit, [&](uint32_t i, V near, uint32_t some) {
       hn::Store(near, Lanes(), entry + i);
-      entered |= bits_of(Lanes(), is_entered) << i;
+      entered |= some << i;
     });
     return entered;
   }
@@ -38,8 +36,7 @@ struct BoxTests {
   HWY_INLINE uint64_t take(const WideNode<kWidth>& node, float limit, uint64_t*& top) const {
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
     uint64_t taken = 0;
-    test(node, limit, [&](uint32_t, V near, hn::Mask<Lanes> is_entered) {
-      const uint32_t entered = bits_of(Lanes(), is_entered);
+    test(node, limit, [&](uint32_t, V near, uint32_t entered) {
       const VectorKeys<kWidth> keys(&node.child[0].word, near, entered);
       taken = kAny ? keys.take_first(&node.child[0].word, top) : keys.take_nearest(top);
     });
@@ -53,7 +50,7 @@ struct BoxTests {
   }
 
  private:
-  /// Calls f(first, where, whether) of children that a vector has room for at a time, from the first on.
+  /// Calls f(first, where, which) of children that a vector has room for at a time, from the first on.
   template <class F>
   HWY_INLINE void test(const WideNode<kWidth>& node, float limit, F&& f) const {
     const Lanes d;
@@ -65,9 +62,9 @@ struct BoxTests {
                  y1 = far_t(sides + rows.far[1] + i, far_y, inverse_far_y);
       const auto z0 = near_t(sides + rows.near[2] + i, near_z, inverse_near_z),
                  z1 = far_t(sides + rows.far[2] + i, far_z, inverse_far_z);
-      const auto near = hn::Max(hn::Max(x0, y0), hn::Max(z0, t_min));
-      const auto far = hn::Min(hn::Min(x1, y1), hn::Min(z1, hn::Set(d, limit)));
-      f(i, near, hn::Le(near, far));
+      V near;
+      const uint32_t entered = overlap<kUsual>(d, {x0, y0, z0, t_min}, {x1, y1, z1, hn::Set(d, limit)}, near);
+      f(i, near, entered);
     }
   }
 

@@ -37,10 +37,10 @@ struct WideRay {
   Float4 origin, origin_near, origin_far;     ///< likewise
   Float4 shear;
   Axes axes;
-  uint32_t octant;  ///< a bit for each axis: 1 if boxes are entered at their upper side, else 0
-  float t_min, t_max;
-  float shift;  ///< of sides, in position
-  float t_off;  ///< by which boxes are entered earlier and left later, besides
+  uint32_t octant;     ///< a bit for each axis: 1 if boxes are entered at their upper side, else 0
+  float t_min, t_max;  ///< without minus zero
+  float shift;         ///< of sides, in position
+  float t_off;         ///< by which boxes are entered earlier and left later, besides
   /// False where numbers are so large or small that float arithmetic may overflow or lose digits, or t may be negative:
   /// then (b - origin_far_moved()) * inverse is for the far sides and likewise for the near ones, which cannot go
   /// wrong, whatever the size; and triangles are tested in double alone.
@@ -49,7 +49,8 @@ struct WideRay {
 
   /// `largest_coordinate`: of the scene's bounds. Most rays are usual and have no small component: what the others need
   /// is elsewhere, so that the division need not wait for it.
-  [[gnu::always_inline]] WideRay(const Ray& ray, float largest_coordinate) : t_min(ray.t_min), t_max(ray.t_max) {
+  [[gnu::always_inline]] WideRay(const Ray& ray, float largest_coordinate)
+      : t_min(ray.t_min + 0.0F), t_max(ray.t_max + 0.0F) {
     const Float4 zero{};
     const Float4 d = first4(ray, offsetof(Ray, direction));  // and t_max, which nobody looks at
     inverse = 1 / d;
@@ -142,8 +143,8 @@ struct WideRay {
   }
 };
 
-/// Where rows of a node's sides begin, in numbers: by axis, of those at which a ray enters boxes and of those at which it
-/// leaves them. Looked up by WideRay::octant, in a fifth of the instructions that working them out takes.
+/// Where rows of a node's sides begin, in numbers: by axis, of those at which a ray enters boxes and of those at which
+/// it leaves them. Looked up by WideRay::octant in fewer instructions than they are worked out.
 struct SideRows {
   size_t near[3], far[3];
 };
