@@ -17,7 +17,8 @@ class ExactTest {
   /// Whether it is hit at most at limit, and where.
   template <class Leaf>
   HWY_INLINE bool hits(const Leaf& leaf, uint32_t i, const WideRay& ray, float limit, Crossing& crossing) const {
-    const Seen seen = see(leaf, i, ray);
+    Seen seen;
+    see(leaf, i, ray, seen);
     const double u = seen.edges[0], v = seen.edges[1], w = seen.edges[2];
     if (std::min(std::min(u, v), w) < 0 && std::max(std::max(u, v), w) > 0) return false;
     if (u + v + w == 0) return false;
@@ -28,7 +29,9 @@ class ExactTest {
   /// Of one that is known to be hit.
   template <class Leaf>
   HWY_INLINE Crossing crossing(const Leaf& leaf, uint32_t i, const WideRay& ray) const {
-    return crossing_of(see(leaf, i, ray));
+    Seen seen;
+    see(leaf, i, ray, seen);
+    return crossing_of(seen);
   }
 
  private:
@@ -41,13 +44,18 @@ class ExactTest {
   };
 
   template <class Leaf>
-  HWY_INLINE Seen see(const Leaf& leaf, uint32_t i, const WideRay& ray) const {
-    const Corners z = corners(leaf, ray.axes.kz, i) - origin_z_;
-    const Corners x = corners(leaf, ray.axes.kx, i) - origin_x_ - shear_x_ * z;
-    const Corners y = corners(leaf, ray.axes.ky, i) - origin_y_ - shear_y_ * z;
+  HWY_INLINE void see(const Leaf& leaf, uint32_t i, const WideRay& ray, Seen& seen) const {
+    Corners x, y, z;
+    load(leaf, ray.axes.kx, i, x);
+    load(leaf, ray.axes.ky, i, y);
+    load(leaf, ray.axes.kz, i, z);
+    z -= origin_z_;
+    x = x - origin_x_ - shear_x_ * z;
+    y = y - origin_y_ - shear_y_ * z;
     const Corners x_cab = __builtin_shufflevector(x, x, 2, 0, 1, 3), y_cab = __builtin_shufflevector(y, y, 2, 0, 1, 3);
     const Corners x_bca = __builtin_shufflevector(x, x, 1, 2, 0, 3), y_bca = __builtin_shufflevector(y, y, 1, 2, 0, 3);
-    return {x_cab * y_bca - y_cab * x_bca, z};
+    seen.edges = x_cab * y_bca - y_cab * x_bca;
+    seen.z = z;
   }
 
   HWY_INLINE Crossing crossing_of(const Seen& seen) const {
@@ -58,24 +66,24 @@ class ExactTest {
             without_minus_zero(static_cast<float>(shares[2]))};
   }
 
-  static HWY_INLINE Corners to_double(Float4 a) {
-#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
-    return _mm256_cvtps_pd(a);
-#else
-    return __builtin_convertvector(a, Corners);
-#endif
-  }
-  static HWY_INLINE Corners corners(const TriangleLeaf& leaf, uint32_t axis, uint32_t i) {
+  static HWY_INLINE void load(const TriangleLeaf& leaf, uint32_t axis, uint32_t i, Corners& to) {
     const float* const first = leaf.column(0, axis) + i;
     const size_t next = size_t{3} * leaf.count;
-    return to_double(Float4{first[0], first[next], first[2 * next], 0});
+    convert(Float4{first[0], first[next], first[2 * next], 0}, to);
   }
-  static HWY_INLINE Corners corners(const QuantisedLeaf& leaf, uint32_t axis, uint32_t i) {
+  static HWY_INLINE void load(const QuantisedLeaf& leaf, uint32_t axis, uint32_t i, Corners& to) {
     const float* const column = leaf.column(axis);
     const uint32_t word = leaf.word(i);
-    return to_double(Float4{column[QuantisedLeaf::corner_number(word, 0)],
-                            column[QuantisedLeaf::corner_number(word, 1)],
-                            column[QuantisedLeaf::corner_number(word, 2)], 0});
+    convert(Float4{column[QuantisedLeaf::corner_number(word, 0)], column[QuantisedLeaf::corner_number(word, 1)],
+                   column[QuantisedLeaf::corner_number(word, 2)], 0},
+            to);
+  }
+  static HWY_INLINE void convert(Float4 a, Corners& to) {
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
+    to = _mm256_cvtps_pd(a);  // for which compilers take four steps
+#else
+    to = __builtin_convertvector(a, Corners);
+#endif
   }
 
   double z_, shear_x_, shear_y_, origin_x_, origin_y_, origin_z_;
