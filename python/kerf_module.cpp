@@ -214,7 +214,7 @@ class MeshScene {
     return py::dict("structure"_a = r.structure, "primitives"_a = r.primitives, "invalid"_a = r.invalid,
                     "degenerate"_a = r.degenerate, "references"_a = r.references,
                     "references_per_primitive"_a = r.references_per_primitive, "sa_max"_a = r.sa_max,
-                    "capped"_a = r.capped,
+                    "capped"_a = r.capped, "short_of_room"_a = r.short_of_room,
                     "split_reason"_a = r.choice ? py::object(py::str(r.choice->reason)) : py::object(py::none()),
                     "bytes"_a = r.bytes, "peak_bytes"_a = r.peak_bytes, "nodes"_a = r.nodes, "leaves"_a = r.leaves,
                     "depth"_a = r.depth, "largest_leaf"_a = r.largest_leaf, "sah_cost"_a = r.sah_cost,
@@ -274,7 +274,8 @@ constexpr const char* kSceneDoc =
     "refittable=True change them and call refit().\n"
     "progress: called from this thread with the share of the build that is done, which ends at 1, and what is being\n"
     "done, some 20 times a second; False from it cancels the build, an exception ends it. max_bytes: the most memory\n"
-    "that the build may take. Raises Error, a ValueError, for bad input, a build that was cancelled (code 'stopped') "
+    "that the build may take; report['short_of_room'] names what cut less for want of it. Raises Error, a ValueError, "
+    "for bad input, a build that was cancelled (code 'stopped') "
     "or\n"
     "that cannot do with max_bytes.";
 

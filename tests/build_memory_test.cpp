@@ -101,6 +101,8 @@ TEST(Memory, FewerReferencesAreMadeWhereItIsShort) {
     if (std::string(structure).find('+') != std::string::npos) {
       EXPECT_TRUE(report.capped) << structure;
     }
+    const std::string first = std::string(structure).substr(0, std::string(structure).find('('));
+    EXPECT_EQ(report.short_of_room, std::vector<std::string>{first}) << structure;
   }
 }
 

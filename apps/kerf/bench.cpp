@@ -83,7 +83,9 @@ void add_options(CLI::App& command, BenchArguments& a) {
       ->check(CLI::Range(1, 1000));
   command.add_option("--limit-seconds", a.limit_seconds, "Give up a row whose build or whose rays take longer")
       ->check(positive);
-  command.add_option("--limit-gigabytes", a.limit_gigabytes, "Give up a row that needs more memory")
+  command
+      .add_option("--limit-gigabytes", a.limit_gigabytes,
+                  "Give up a row that needs more memory; one that can do with less cuts less, and says so")
       ->check(positive)
       ->capture_default_str();
   command.add_flag("--skip-invalid", a.skip_invalid, "Drop triangles that are not finite, instead of an error");

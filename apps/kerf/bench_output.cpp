@@ -67,6 +67,7 @@ Json run_json(const BenchScene& scene, const BenchRow& row, const BenchRun& run)
               {"build_seconds_spread", build_spread_json(row)},
               {"bytes", row.bytes},
               {"references", row.references ? Json(std::round(*row.references)) : Json()},
+              {"short_of_room", row.engine == BenchEngine::kerf ? Json(row.short_of_room) : Json()},
               {"hits", run.hits},
               {"unlike_robust", count_json(run.unlike_robust)},
               {"unlike_kerf", count_json(run.unlike_kerf)},
@@ -80,7 +81,7 @@ Json unfinished_json(const BenchScene& scene, const BenchRow& row, size_t kind) 
   one["why_not"] = row.why_not;
   for (const char* key :
        {"mrays_per_second", "mrays_spread", "ratio_to_embree_high", "build_seconds", "build_seconds_spread", "bytes",
-        "references", "hits", "unlike_robust", "unlike_kerf", "verdicts", "settings"}) {
+        "references", "short_of_room", "hits", "unlike_robust", "unlike_kerf", "verdicts", "settings"}) {
     one[key] = nullptr;
   }
   return one;

@@ -165,6 +165,7 @@ Json report_json(const BuildReport& r) {
           {"references_per_primitive", r.references_per_primitive},
           {"sa_max", limit_json(r.sa_max)},
           {"capped", r.capped},
+          {"short_of_room", r.short_of_room},
           {"split_choice", choice_json(r.choice)},
           {"bytes", r.bytes},
           {"peak_bytes", r.peak_bytes},
@@ -185,8 +186,14 @@ Json report_json(const BuildReport& r) {
 }
 
 void print_build_notes(const BuildReport& report) {
-  if (report.capped && !report.choice)
-    fmt::print(stderr, "kerf: note: the cap on references raised the limit to {:.6g}\n", report.sa_max);
+  if (!report.short_of_room.empty()) {
+    fmt::print(stderr, "kerf: note: {}: raise it\n", room_sentence(report.short_of_room));
+  }
+  if (report.capped && !report.choice) {
+    const bool is_short = !report.short_of_room.empty() && report.structure.starts_with(report.short_of_room.front());
+    fmt::print(stderr, "kerf: note: {} raised the limit to {:.6g}\n",
+               is_short ? "the limit of bytes" : "the cap on references", report.sa_max);
+  }
   if (report.invalid > 0) fmt::print(stderr, "kerf: note: {} invalid triangles were dropped\n", report.invalid);
 }
 

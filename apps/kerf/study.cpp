@@ -135,7 +135,9 @@ void add_options(CLI::App& command, StudyArguments& a) {
       ->check(CLI::Range(1, 1000));
   command.add_option("--limit-seconds", a.limit_seconds, "Give up a row whose build or whose rays take longer")
       ->check(positive);
-  command.add_option("--limit-gigabytes", a.limit_gigabytes, "Give up a row that needs more memory")
+  command
+      .add_option("--limit-gigabytes", a.limit_gigabytes,
+                  "Give up a row that needs more memory; one that can do with less cuts less, and says so")
       ->check(positive)
       ->capture_default_str();
   command.add_flag("--no-overlap", a.no_overlap,

@@ -46,6 +46,7 @@ Json row_json(const SplittingScene& scene, const SplittingRow& row) {
               {"peak_bytes", row.peak_bytes ? Json(*row.peak_bytes) : Json()},
               {"tree_hash", fmt::format("{:016x}", row.tree_hash)},
               {"split_choice", choice_json(row.choice)},
+              {"short_of_room", row.short_of_room},
               {"builds", Json::array()},
               {"rays", Json::array()}});
   for (const BuildReport::Seconds& seconds : row.builds) one["builds"].push_back(seconds_json(seconds));
@@ -118,7 +119,7 @@ Json study_json(std::span<const StudyResult> results) {
       one["why_not"] = r.why_not;
       for (const char* key :
            {"references_per_triangle", "sa_max", "build_seconds", "nodes_per_ray", "triangles_per_ray", "boxes_per_ray",
-            "trace_seconds", "speedup", "bytes", "depth", "sah_cost", "end_point_overlap", "hits"}) {
+            "trace_seconds", "speedup", "bytes", "depth", "sah_cost", "end_point_overlap", "hits", "short_of_room"}) {
         one[key] = nullptr;
       }
       all.push_back(std::move(one));
@@ -139,6 +140,7 @@ Json study_json(std::span<const StudyResult> results) {
                 {"sah_cost", r.sah_cost},
                 {"end_point_overlap", r.end_point_overlap ? Json(*r.end_point_overlap) : Json()},
                 {"hits", r.hits},
+                {"short_of_room", r.short_of_room},
                 {"tree_hash", fmt::format("{:016x}", r.tree_hash)}});
     if (r.paper) one["paper"] = paper_json(*r.paper);
     all.push_back(std::move(one));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -12,12 +13,19 @@
 
 namespace kerf {
 
+/// What a builder tells besides the tree. From any thread; the same for any number of threads.
+struct BuildNotes {
+  /// It would have cut more references, as its own options allow, had BuildInput::most or the limit of bytes left room.
+  std::atomic<bool> short_of_room = false;
+};
+
 /// What a builder works on. References alone are enough for one that does not split.
 struct BuildInput {
   std::vector<Reference> references;
   Clipper clipper;  ///< for a builder that splits; its function may be null for the others
   WorkLimit limit;
   size_t most = kMaxReferences;  ///< references that it may make, whatever the options say
+  BuildNotes* notes = nullptr;   ///< told, where there are any
 
   BuildInput() = default;
   BuildInput(std::vector<Reference> all, const Clipper& clip = {}, const WorkLimit& work = {})

@@ -46,6 +46,8 @@ struct SpatialPlane {
   Box3f below, above;                       ///< may be too large: cuts are guessed at
 
   bool is_found() const { return below_count > 0; }
+  /// References on the two sides together.
+  double both() const { return below_count + above_count; }
 };
 
 /// What a plane must keep to.

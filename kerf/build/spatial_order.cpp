@@ -144,11 +144,15 @@ double SpatialOrder::lengths(const Subset& subset) const {
 
 void SpatialOrder::make_room(const Subset& subset, Halves& halves) {
   const uint32_t spare = subset.room() - halves.left.count() - halves.right.count();
-  if (spare == 0) return;
+  const uint32_t wanted = spare + subset.lost;
+  if (wanted == 0) return;
   const double left = lengths(halves.left), right = lengths(halves.right);
   const double share = left + right > 0 ? left / (left + right) : 0.5;
   halves.left.spare = std::min(static_cast<uint32_t>(share * spare), spare);
   halves.right.spare = spare - halves.left.spare;
+  const uint32_t left_wanted = std::clamp(static_cast<uint32_t>(share * wanted), halves.left.spare, wanted);
+  halves.left.lost = std::min(left_wanted - halves.left.spare, subset.lost);
+  halves.right.lost = subset.lost - halves.left.lost;
   const auto from = references_.begin();
   if (halves.left.spare > 0) {
     std::copy_backward(from + halves.right.begin, from + halves.right.end, from + halves.right.end + halves.left.spare);

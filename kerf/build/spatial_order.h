@@ -24,6 +24,7 @@ class SpatialOrder : public ReferenceOrder {
   /// Divides the subset's free places between its halves, which stand side by side from its begin, and moves the right
   /// one up to where its own places begin. The rule looks at the two halves only: each gets as much as the lengths in
   /// it, the roots of its boxes' areas, add up to. By counts alone, a few walls beside many pebbles would get nothing.
+  /// Lost places are divided so that both halves know what they would have got had none been lost.
   void make_room(const Subset& subset, Halves& halves);
 
  private:

@@ -62,11 +62,12 @@ class WholeDivision {
 class SpatialSplit {
  public:
   SpatialSplit(SpatialOrder& order, const Clipper& clipper, const SpatialSplitOptions& own,
-               const TopDownOptions& shared)
+               const TopDownOptions& shared, BuildNotes* notes)
       : order_(order),
         clipper_(clipper),
         own_(own),
         shared_(shared),
+        notes_(notes),
         least_overlap_(own.overlap * half_area(order.whole().bounds)) {}
 
   std::optional<Halves> divide(const Subset& subset, uint32_t depth) {
@@ -74,28 +75,28 @@ class SpatialSplit {
     if (subset.count() <= shared_.leaf_size && detail::leaf_is_cheapest(subset, shared_)) return std::nullopt;
     const uint64_t most = detail::capacity(shared_.leaf_size, shared_.max_depth - depth - 1);
     const WholeDivision whole(order_.references(subset), subset, own_.bins);
-    const SpatialPlane spatial =
-        whole.overlap() > std::max(least_overlap_, own_.node_overlap * half_area(subset.bounds))
-            ? find_spatial(subset, whole.cost(), most)
-            : SpatialPlane{};
+    const bool may_cut = whole.overlap() > std::max(least_overlap_, own_.node_overlap * half_area(subset.bounds));
+    const SpatialPlane spatial = may_cut ? find_spatial(subset, subset.spare, whole.cost(), most) : SpatialPlane{};
+    const bool is_asked = subset.lost > 0 && !notes_->short_of_room.load(std::memory_order_relaxed);
+    if (may_cut && is_asked) look_for_lost(subset, whole.cost(), most);
     if (subset.count() <= shared_.leaf_size) {
       if (!spatial.is_found() && !whole.is_found()) return std::nullopt;
-      const detail::AreaSums sums =
-          spatial.is_found() ? detail::AreaSums{half_area(spatial.below) + half_area(spatial.above), spatial.cost}
-                             : whole.sums();
+      const detail::AreaSums sums = spatial.is_found() ? sums_of(spatial) : whole.sums();
       if (detail::leaf_is_cheaper(subset, sums, shared_)) return std::nullopt;
     }
     Halves halves = spatial.is_found() ? order_.cut(subset, spatial, clipper_) : divide_whole(subset, whole, most);
-    order_.make_room(subset, halves);
+    Subset given = subset;
+    if (!is_asked) given.lost = 0;
+    order_.make_room(given, halves);
     return halves;
   }
 
  private:
   /// A plane to cut at, not much dearer than the best object split, and cheaper than a leaf. Areas times counts take a
   /// half for a leaf: they overrate what more references cost in a tree, and do not see what overlap costs further
-  /// down.
-  SpatialPlane find_spatial(const Subset& subset, double object_cost, uint64_t most) const {
-    if (subset.spare == 0) return {};
+  /// down. With so many free places.
+  SpatialPlane find_spatial(const Subset& subset, uint32_t spare, double object_cost, uint64_t most) const {
+    if (spare == 0) return {};
     double cost = own_.favour * object_cost;
     if (subset.count() <= shared_.leaf_size) {
       const double leaf = subset.count() + (shared_.leaf_cost - shared_.inner_cost) / shared_.primitive_cost;
@@ -103,7 +104,21 @@ class SpatialSplit {
     }
     const SpatialSlices slices(subset.bounds, own_.spatial_bins);
     return cheapest_spatial_plane(order_.references(subset), {}, slices, clipper_,
-                                  {static_cast<double>(subset.room()), static_cast<double>(most), cost});
+                                  {static_cast<double>(subset.count() + spare), static_cast<double>(most), cost});
+  }
+
+  /// Notes whether the best cut is one that only the lost places had room for. As long as none is, all is as if none
+  /// were lost, so the first one on each way down is found, and the outcome does not depend on who looks first.
+  void look_for_lost(const Subset& subset, double object_cost, uint64_t most) {
+    if (subset.spare >= subset.count()) return;  // no plane needs more
+    const SpatialPlane wanted = find_spatial(subset, subset.spare + subset.lost, object_cost, most);
+    if (!wanted.is_found() || wanted.both() <= subset.room()) return;
+    if (subset.count() <= shared_.leaf_size && detail::leaf_is_cheaper(subset, sums_of(wanted), shared_)) return;
+    notes_->short_of_room = true;
+  }
+
+  static detail::AreaSums sums_of(const SpatialPlane& plane) {
+    return {half_area(plane.below) + half_area(plane.above), plane.cost};
   }
 
   Halves divide_whole(const Subset& subset, const WholeDivision& whole, uint64_t most) {
@@ -116,6 +131,7 @@ class SpatialSplit {
   const Clipper& clipper_;
   SpatialSplitOptions own_;
   const TopDownOptions& shared_;
+  BuildNotes* notes_;  // only looked at where places were lost
   double least_overlap_;
 };
 
@@ -174,15 +190,17 @@ Bvh build_spatial_split(BuildInput input, const OptionValues& options) {
   }
   if (input.references.empty()) return {};
   // Where memory allows fewer pieces, fewer are made.
-  const size_t room =
-      std::max(input.references.size(), std::min({most_references(input.references.size(), options["cap"]), input.most,
-                                                  input.limit.bytes / kSpatialSplitBytes}));
+  const size_t count = input.references.size();
+  const size_t wanted = std::max(count, most_references(count, options["cap"]));
+  const size_t room = std::max(count, std::min({wanted, input.most, input.limit.bytes / kSpatialSplitBytes}));
   SpatialOrder order(std::move(input.references), room);
   SpatialSplit divider(order, input.clipper,
                        {bins, static_cast<uint32_t>(options["spatial_bins"]), options["overlap"],
                         options["node_overlap"], options["favour"]},
-                       shared);
-  TreePart tree = detail::build_parts(divider, order.whole(), shared, input.limit);
+                       shared, input.notes);
+  Subset whole = order.whole();
+  if (input.notes != nullptr) whole.lost = static_cast<uint32_t>(wanted - room);
+  TreePart tree = detail::build_parts(divider, whole, shared, input.limit);
   HeldBytes slots(room * sizeof(LeafSlot));
   const std::vector<LeafSlot> spread = slots_of(order);
   order.free_references();

@@ -21,6 +21,7 @@ struct Subset {
   Box3f bounds;
   Box3f centers;       ///< of the references' lower + upper, twice their centres; a partition may leave it empty
   uint32_t spare = 0;  ///< free places from `end` on, for pieces of these references, where a builder cuts them
+  uint32_t lost = 0;   ///< free places that there would be besides, had memory not been short
 
   uint32_t count() const { return end - begin; }
   uint32_t room() const { return count() + spare; }

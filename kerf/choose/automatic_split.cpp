@@ -118,8 +118,7 @@ SplitChoice explain(std::span<const Reference> whole, std::span<const Reference>
 
 /// Whether all cuts together lower the predicted cost by what each of them should. They do not where triangles are
 /// small and well shaped, and the guide's planes cut some all the same.
-bool saves_enough(const SplitChoice& choice) {
-  const SplitChoice::Step &from = choice.curve.front(), &to = choice.curve.back();
+bool saves_enough(const SplitChoice::Step& from, const SplitChoice::Step& to) {
   return from.cost - to.cost >= GuideRules{}.scene_gain * (to.references_per_primitive - 1) * from.cost;
 }
 
@@ -129,15 +128,25 @@ std::string number(double value) {
   return text;
 }
 
-std::string reason_of(const SplitChoice& choice, bool capped, double cap, const GuideRules& rules) {
+bool saves_enough(const SplitChoice& choice) { return saves_enough(choice.curve.front(), choice.curve.back()); }
+
+/// What keeps a splitter from more cuts; empty where nothing does.
+std::string stop_of(const SplitResult& result, double cap) {
+  if (result.short_of_room) return "the limit of bytes leaves no room for more than " + number(cap) + " of each";
+  return result.capped ? "the cap of " + number(cap) + " lets no more be cut" : "";
+}
+
+/// `stop`: what kept it from more cuts; empty where nothing did.
+std::string reason_of(const SplitChoice& choice, const std::string& stop, const GuideRules& rules) {
   const SplitChoice::Step &from = choice.curve.front(), &to = choice.curve.back();
-  const std::string limit = "the cap of " + number(cap) + " lets no more be cut";
-  if (to.references_per_primitive <= 1) return "nothing is cut: " + (capped ? limit : "the cuts would not save enough");
+  if (to.references_per_primitive <= 1) {
+    return "nothing is cut: " + (stop.empty() ? "the cuts would not save enough" : stop);
+  }
   const std::string what = number(to.references_per_primitive) +
                            " references per primitive lower the predicted cost from " + number(from.cost) + " to " +
                            number(to.cost);
-  return what + (capped ? "; " + limit
-                        : "; 1 % more would lower it by less than " + number(rules.scene_gain) + " % of itself");
+  return what + (stop.empty() ? "; 1 % more would lower it by less than " + number(rules.scene_gain) + " % of itself"
+                              : "; " + stop);
 }
 
 /// What the guide makes of a scene, asked for more or less gain.
@@ -153,15 +162,11 @@ class Attempts {
 
   /// The pieces for `strictness` times the gain; nothing if they are too many.
   std::optional<GuidedPieces> at(double strictness) {
-    rules_.cell_gain = GuideRules{}.cell_gain * strictness;
-    rules_.scene_gain = GuideRules{}.scene_gain * strictness;
-    rules_.plane_gain = kPlaneGain * (strictness - 1);
+    ask_for(strictness);
     const SplitGuide guide(judges_, input_.geometries, rules_, input_.limit);
     std::vector<GainCurve> curves((input_.whole.size() + kSplitGrain - 1) / kSplitGrain);
     auto pieces = split_each(input_.whole, most_, input_.limit, [&](const Reference& reference, const auto& emit) {
-      if (half_area(reference.bounds()) < areas_.candidate) return static_cast<void>(emit(reference));
-      guide.split(reference, input_.clipper,
-                  curves[static_cast<size_t>(&reference - input_.whole.data()) / kSplitGrain], emit);
+      split(guide, reference, curves[static_cast<size_t>(&reference - input_.whole.data()) / kSplitGrain], emit);
     });
     if (!pieces) return std::nullopt;
     GuidedPieces guided{std::move(*pieces), {}};
@@ -188,7 +193,43 @@ class Attempts {
     return pieces ? std::move(pieces) : at(fits);
   }
 
+  /// Where the pieces of at(1) would lead, however many they are: they are counted, none is kept.
+  SplitChoice::Step without_cap() {
+    struct Sum {
+      double count = 0, areas = 0;
+    };
+    ask_for(1);
+    const SplitGuide guide(judges_, input_.geometries, rules_, input_.limit);
+    std::vector<Sum> sums((input_.whole.size() + kSplitGrain - 1) / kSplitGrain);
+    parallel_for(input_.whole.size(), kSplitGrain, [&](size_t begin, size_t end) {
+      Sum& sum = sums[begin / kSplitGrain];
+      GainCurve unused;
+      for (size_t i = begin; i < end; ++i) {
+        split(guide, input_.whole[i], unused, [&](const Reference& piece) {
+          sum.count += 1;
+          sum.areas += half_area(piece.bounds()) / areas_.whole;
+          return true;
+        });
+      }
+    });
+    Sum all;
+    for (const Sum& sum : sums) all = {all.count + sum.count, all.areas + sum.areas};
+    return {all.count / static_cast<double>(input_.whole.size()), Areas::cost(all.count, all.areas)};
+  }
+
  private:
+  void ask_for(double strictness) {
+    rules_.cell_gain = GuideRules{}.cell_gain * strictness;
+    rules_.scene_gain = GuideRules{}.scene_gain * strictness;
+    rules_.plane_gain = kPlaneGain * (strictness - 1);
+  }
+
+  template <class Emit>
+  void split(const SplitGuide& guide, const Reference& reference, GainCurve& curve, const Emit& emit) const {
+    if (half_area(reference.bounds()) < areas_.candidate) return static_cast<void>(emit(reference));
+    guide.split(reference, input_.clipper, curve, emit);
+  }
+
   const SplitInput& input_;
   const Areas& areas_;
   Judges judges_;
@@ -213,9 +254,13 @@ SplitResult split_automatically(const SplitInput& input, const AutomaticSplit& o
     result.references.assign(whole.begin(), whole.end());
     return result;
   }
-  Attempts attempts(input, areas, most_references(whole.size(), options.cap));
+  const double cap = input.cap(options.cap);
+  const SplitChoice::Step nothing_cut{1, Areas::cost(static_cast<double>(whole.size()), areas.sum)};
+  Attempts attempts(input, areas, most_references(whole.size(), cap));
   std::optional<GuidedPieces> pieces = attempts.at(1);
-  result.capped = !pieces;
+  const bool has_less = input.has_less_than(options.cap);
+  result.short_of_room = !pieces && has_less && saves_enough(nothing_cut, attempts.without_cap());
+  result.capped = result.short_of_room || (!pieces && !has_less);
   if (!pieces) pieces = attempts.fitting();
   if (pieces) {
     result.choice = explain(whole, pieces->references, areas, pieces->curve);
@@ -225,9 +270,9 @@ SplitResult split_automatically(const SplitInput& input, const AutomaticSplit& o
     result.references = std::move(pieces->references);
   } else {
     result.references.assign(whole.begin(), whole.end());
-    result.choice->curve = {{1, Areas::cost(static_cast<double>(whole.size()), areas.sum)}};
+    result.choice->curve = {nothing_cut};
   }
-  result.choice->reason = reason_of(*result.choice, result.capped, options.cap, attempts.rules());
+  result.choice->reason = reason_of(*result.choice, stop_of(result, cap), attempts.rules());
   return result;
 }
 

@@ -16,8 +16,9 @@ struct AutomaticSplit {
 /// nothing where triangles are small and alike to twice the references where they are large and lie askew. The planes
 /// are those that a coarse tree would cut at, found on a sample; see guide_splits(). References come in the caller's
 /// order, pieces of one primitive side by side. Parallel; the outcome does not depend on the number of threads, and
-/// but for rounding neither on the scene's scale. SplitResult::choice says how far it went and why. Throws
-/// Error(invalid_option) if cap is not at least 1, Error(stopped) at the limit.
+/// but for rounding neither on the scene's scale. SplitResult::choice says how far it went and why. Where
+/// SplitInput::most leaves less room than the cap, that counts. Throws Error(invalid_option) if cap is not at least 1,
+/// Error(stopped) at the limit.
 SplitResult split_automatically(const SplitInput& input, const AutomaticSplit& options = {});
 
 /// For builders other than Kerf's: the boxes of a mesh's triangles, split as split_automatically() does, as

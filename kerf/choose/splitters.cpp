@@ -1,5 +1,7 @@
 #include "kerf/choose/splitters.h"
 
+#include <utility>
+
 #include "kerf/base/error.h"
 #include "kerf/choose/automatic_split.h"
 #include "kerf/references/early_split.h"
@@ -24,6 +26,19 @@ constexpr OptionSpec kEarlySplitOptions[] = {
     {"budget", "instead of sa_max: as finely as this many references per primitive allow", 1.5, 1, kMostPerPrimitive},
 };
 
+/// Of a limit that was asked for with a cap: whether the room or the cap kept it from that limit.
+SplitResult of_limit(SplitResult result, const SplitInput& input, double cap) {
+  result.short_of_room = result.capped && input.has_less_than(cap);
+  return result;
+}
+
+/// The same of a budget, which asks for no limit: to use it up is what was wanted.
+SplitResult of_budget(SplitResult result, const SplitInput& input, double budget) {
+  result = of_limit(std::move(result), input, budget);
+  result.capped = result.short_of_room;
+  return result;
+}
+
 SplitResult split_early(const SplitInput& input, const OptionValues& values) {
   if (values.is_set("budget")) {
     if (values.is_set("sa_max") || values.is_set("cap")) {
@@ -31,15 +46,15 @@ SplitResult split_early(const SplitInput& input, const OptionValues& values) {
     }
     SplitResult result =
         early_split(input.whole, input.clipper, EarlySplit::with_budget(input.cap(values["budget"])), input.limit);
-    result.capped = input.cap(values["budget"]) < values["budget"];  // no other limit was asked for
-    return result;
+    return of_budget(std::move(result), input, values["budget"]);
   }
   if (is_automatic(values["sa_max"])) {
     AutomaticSplit automatic;
-    automatic.cap = input.cap(values.is_set("cap") ? values["cap"] : automatic.cap);
+    if (values.is_set("cap")) automatic.cap = values["cap"];
     return split_automatically(input, automatic);
   }
-  return early_split(input.whole, input.clipper, {values["sa_max"], input.cap(values["cap"])}, input.limit);
+  return of_limit(early_split(input.whole, input.clipper, {values["sa_max"], input.cap(values["cap"])}, input.limit),
+                  input, values["cap"]);
 }
 
 constexpr std::string_view kMeasures[] = {"edge", "area"};  // in the order of Refinement::Measure
@@ -61,16 +76,15 @@ SplitResult split_by_refinement(const SplitInput& input, const OptionValues& val
     const auto measure = static_cast<Refinement::Measure>(static_cast<uint32_t>(values["by"]));
     SplitResult result = refine(input.geometries, input.whole,
                                 Refinement::with_budget(input.cap(values["budget"]), measure), input.limit);
-    result.capped = input.cap(values["budget"]) < values["budget"];  // no other limit was asked for
-    return result;
+    return of_budget(std::move(result), input, values["budget"]);
   }
   if (values.is_set("by")) throw Error(ErrorCode::invalid_option, "refine", "by is of no meaning without budget");
   if (by_area && values.is_set("edge")) {
     throw Error(ErrorCode::invalid_option, "refine", "edge and area are two measures: give one");
   }
   const Refinement::Measure measure = by_area ? Refinement::Measure::area : Refinement::Measure::edge;
-  return refine(input.geometries, input.whole, {measure, values[by_area ? "area" : "edge"], input.cap(values["cap"])},
-                input.limit);
+  const Refinement wanted{measure, values[by_area ? "area" : "edge"], input.cap(values["cap"])};
+  return of_limit(refine(input.geometries, input.whole, wanted, input.limit), input, values["cap"]);
 }
 
 constexpr SplitterEntry kSplitters[] = {

@@ -7,6 +7,7 @@
 #include "kerf/base/options.h"
 #include "kerf/base/work_limit.h"
 #include "kerf/references/clipper.h"
+#include "kerf/references/split_each.h"
 #include "kerf/references/split_result.h"
 
 namespace kerf {
@@ -23,6 +24,8 @@ struct SplitInput {
   double cap(double wanted) const {
     return whole.empty() ? wanted : std::min(wanted, static_cast<double>(most) / static_cast<double>(whole.size()));
   }
+  /// Whether `most` leaves less room than that many references per primitive.
+  bool has_less_than(double wanted) const { return most < most_references(whole.size(), wanted); }
 };
 
 /// One splitter of the menu: references in, more references out.

@@ -25,8 +25,9 @@ struct SplitChoice {
 struct SplitResult {
   std::vector<Reference> references;
   double limit = 0;     ///< that was used, in the splitter's own measure, such as sa_max; NaN: it has no single one
-  bool capped = false;  ///< true: the limit asked for would have passed the cap, so it was raised
+  bool capped = false;  ///< true: the limit asked for would have passed the cap or the room, so it was raised
   std::optional<SplitChoice> choice = std::nullopt;  ///< of automatic splitting
+  bool short_of_room = false;                        ///< true: with the room that its cap allows it would have cut more
 };
 
 }  // namespace kerf

@@ -114,6 +114,12 @@ size_t count_primitives(std::span<const Geometry> geometries) {
 
 }  // namespace
 
+std::string room_sentence(std::span<const std::string> short_of_room) {
+  std::string stages;
+  for (const std::string& stage : short_of_room) stages += (stages.empty() ? "" : " and ") + stage;
+  return "the limit of bytes left " + stages + " no room to cut as the options allow";
+}
+
 struct Scene::Added {
   std::vector<Geometry> geometries;
 };
@@ -177,6 +183,7 @@ StructureInput Scene::Built::make_input(const Pipeline& pipeline, const BuildOpt
     input.is_split = input.references.size() > kept;
     report.sa_max = split.limit;
     report.capped = split.capped;
+    if (split.short_of_room) report.short_of_room.emplace_back((*splitter)->name);
     report.choice = std::move(split.choice);
   }
   report.seconds.split = stages.lap();
@@ -210,12 +217,15 @@ void Scene::Built::make_structure(StructureInput input, const Pipeline& pipeline
   const std::span<const Geometry> all = geometries;
   input.held.release();
   BuildInput given(std::exchange(input.references, {}), geometry_clipper(all), input.limit);
+  BuildNotes notes;
   given.most = most_references;
+  given.notes = &notes;
   const bool only_triangles = std::all_of(all.begin(), all.end(), [](const Geometry& geometry) {
     return std::holds_alternative<TriangleMesh>(geometry.shapes);
   });
   const auto costs = only_triangles && layout.costs ? std::optional(layout.costs(layout_options)) : std::nullopt;
   Bvh bvh = builder.build(std::move(given), options_for(makers[0], layout, costs));
+  if (notes.short_of_room) report.short_of_room.emplace_back(builder.name);
   HeldBytes tree(bvh.bytes());
   input.is_split = bvh.slots.size() > kept;  // some builders split
   if (input.is_split) mark_repeated(bvh, geometries);

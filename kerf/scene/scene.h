@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "kerf/base/box3.h"
 #include "kerf/geometry/geometry.h"
@@ -29,7 +30,8 @@ struct BuildOptions {
   bool skip_invalid = false;  ///< drop primitives that are not finite or have a bad index, instead of an error
   bool refittable = false;    ///< keep what refit() needs, and primitives that may get an area
   /// When to give up. A limit on bytes below what is possible is refused before work starts, see Scene::memory_need();
-  /// where it allows fewer references than a splitter would make, fewer are made.
+  /// where it allows fewer references than a splitter or spatial_split would make, fewer are made, and
+  /// BuildReport::short_of_room says so.
   WorkLimit limit = {};
   /// Called with the share that is done, from 0 at once to 1 at the end, and what is being done; returns false to
   /// cancel the build, which then throws Error(stopped). From whichever thread works, one at a time, some 20 times a
@@ -48,7 +50,12 @@ struct BuildReport {
   /// The limit that the splitter used: a surface area, or refine's edge length or area; infinite without a splitter,
   /// NaN where it was chosen for each part of the scene.
   double sa_max = 0;
-  bool capped = false;                ///< the limit asked for would have passed the cap on references, so it was raised
+  /// The limit asked for would have passed the cap on references, or the room for them, so the splitter raised it.
+  bool capped = false;
+  /// Stages of the pipeline, splitter and builder, that would have cut more, as their options allow, had BuildOptions::
+  /// limit left room for more references; empty where it made no difference, though it may be below what the options
+  /// allow.
+  std::vector<std::string> short_of_room;
   std::optional<SplitChoice> choice;  ///< of automatic splitting: how far it went, and why
   size_t bytes = 0;                   ///< of what rays are traced through, without the caller's memory
   size_t peak_bytes = 0;              ///< the most that the build's large arrays took at once, the outcome's included
@@ -62,6 +69,10 @@ struct BuildReport {
     double references = 0, split = 0, build = 0, optimise = 0, layout = 0, total = 0;
   } seconds;
 };
+
+/// BuildReport::short_of_room in a clause, such as "the limit of bytes left spatial_split no room to cut as the options
+/// allow"; it must not be empty.
+std::string room_sentence(std::span<const std::string> short_of_room);
 
 /// Primitives and what finds which of them rays hit.
 ///

@@ -82,6 +82,7 @@ class KerfSubject : public BenchSubject {
     row_.finished = true;
     row_.why_not.clear();
     row_.references = static_cast<double>(report.references);
+    row_.short_of_room = report.short_of_room;
     row_.bytes = report.bytes;
     row_.isa = report.instruction_set;
     row_.builds = {report.seconds.total};

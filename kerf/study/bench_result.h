@@ -50,8 +50,9 @@ struct BenchRow {
   std::string why_not = "it was interrupted";
 
   std::optional<double> references;  ///< in leaves; of Embree: by its own statistics, within some tenths of a percent
-  size_t bytes = 0;                  ///< without the caller's vertices
-  std::vector<double> builds;        ///< seconds
+  std::vector<std::string> short_of_room;  ///< of Kerf's rows: stages that the limit of bytes kept from cuts
+  size_t bytes = 0;                        ///< without the caller's vertices
+  std::vector<double> builds;              ///< seconds
   std::vector<BenchRun> runs;
 
   /// The same in every scene.

@@ -90,7 +90,7 @@ std::string row_lines(const BenchScene& scene, const BenchRow& row, size_t width
     }
     text += "  " + unlike_text(scene, row, entry.feed) + "\n";
   }
-  return text;
+  return text + room_line(row.short_of_room);
 }
 
 /// What Kerf finds beside Embree's robust scene, kind by kind.

@@ -44,6 +44,7 @@ struct SplittingRow {
   uint64_t tree_hash = 0;
   std::vector<BuildReport::Seconds> builds;  ///< timed rows take turns, so builds of two rows with one number pair
   std::optional<SplitChoice> choice;
+  std::vector<std::string> short_of_room;  ///< stages that the limit of bytes kept from cuts
 
   /// Of each kind of rays, in the order of SplittingScene::kinds.
   struct Rays {

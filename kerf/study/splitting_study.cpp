@@ -135,6 +135,7 @@ class SplittingStudy {
     to.tree_hash = report.tree_hash;
     to.builds = from.builds;
     to.choice = report.choice;
+    to.short_of_room = report.short_of_room;
     for (size_t k = 0; k < rays_.size(); ++k) {
       const MeasuredRow::Traced& traced = from.traced[k];
       const double count = std::max(1.0, static_cast<double>(rays_[k].rays.size()));

@@ -57,7 +57,7 @@ std::string row_line(const SplittingScene& scene, const SplittingRow& row) {
   }
   const SplittingRow* plain = scene.row(Role::plain);
   const std::string speed = plain != nullptr && plain != &row ? speed_text(paired_speeds(scene, *plain, row)) : "";
-  return text + (speed.empty() ? "" : "  " + speed) + "\n";
+  return text + (speed.empty() ? "" : "  " + speed) + "\n" + room_line(row.short_of_room);
 }
 
 std::string goal_lines(const std::vector<GoalVerdict>& verdicts) {

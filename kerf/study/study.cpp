@@ -138,6 +138,7 @@ class Study {
     result.hits = traced.hits;
     result.tree_hash = row.report.tree_hash;
     result.choice = row.report.choice;
+    result.short_of_room = row.report.short_of_room;
   }
 
   double speedup(const std::vector<double>& seconds, size_t k) const {

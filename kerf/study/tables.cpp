@@ -64,6 +64,7 @@ std::string row_text(const StudyResult& result, size_t width) {
   for (size_t i = 0; i + 1 < lines.size(); ++i) text += lines[i] + "\n";
   text += fmt::format("{:<{}} {}\n", lines.back(), width,
                       result.finished ? figures(result) : "not finished: " + result.why_not);
+  text += room_line(result.short_of_room);
   if (result.paper) {
     const PaperRow& p = *result.paper;
     text += fmt::format("{:<{}} {:>6.2f} {:>8} {:>7} {:>7} {:>8} {:>6.2f}x\n", "  the paper", width,
@@ -80,6 +81,11 @@ std::string csv_field(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
   return out + "\"";
+}
+
+std::string room_line(std::span<const std::string> short_of_room) {
+  if (short_of_room.empty()) return "";
+  return fmt::format("  {}: raise --limit-gigabytes\n", room_sentence(short_of_room));
 }
 
 std::string bytes_text(size_t bytes) {
@@ -106,18 +112,18 @@ std::string csv_table(std::span<const StudyResult> results) {
   std::string text =
       "scene,triangles,row,rays,ray_count,finished,why_not,references_per_triangle,build_seconds,build_seconds_least,"
       "build_seconds_most,nodes_per_ray,triangles_per_ray,boxes_per_ray,trace_seconds,trace_seconds_least,"
-      "trace_seconds_most,speedup,bytes,depth,sah_cost,end_point_overlap,hits\n";
+      "trace_seconds_most,speedup,bytes,depth,sah_cost,end_point_overlap,hits,short_of_room\n";
   for (const StudyResult& r : results) {
     text += fmt::format("{},{},{},{},{},{},{}", csv_field(r.scene), r.triangles, csv_field(r.row), r.rays, r.ray_count,
                         r.finished, csv_field(r.why_not));
     if (r.finished) {
-      text += fmt::format(",{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.references_per_triangle,
-                          r.build_seconds.median, r.build_seconds.least, r.build_seconds.most, r.nodes_per_ray,
-                          r.triangles_per_ray, r.boxes_per_ray, r.trace_seconds.median, r.trace_seconds.least,
-                          r.trace_seconds.most, r.speedup, r.bytes, r.depth, r.sah_cost,
-                          r.end_point_overlap ? fmt::format("{}", *r.end_point_overlap) : "", r.hits);
+      text += fmt::format(
+          ",{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.references_per_triangle, r.build_seconds.median,
+          r.build_seconds.least, r.build_seconds.most, r.nodes_per_ray, r.triangles_per_ray, r.boxes_per_ray,
+          r.trace_seconds.median, r.trace_seconds.least, r.trace_seconds.most, r.speedup, r.bytes, r.depth, r.sah_cost,
+          r.end_point_overlap ? fmt::format("{}", *r.end_point_overlap) : "", r.hits, fmt::join(r.short_of_room, "+"));
     } else {
-      text += std::string(16, ',') + "\n";
+      text += std::string(17, ',') + "\n";
     }
   }
   return text;

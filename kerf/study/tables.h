@@ -17,6 +17,10 @@ std::string csv_table(std::span<const StudyResult> results);
 /// A text as a field of comma-separated values: in quotes where it needs them.
 std::string csv_field(const std::string& text);
 
+/// A line for a row below which it stands: which of its stages had no room to cut, and what gives them more. Empty
+/// where all had room.
+std::string room_line(std::span<const std::string> short_of_room);
+
 /// Bytes in a unit that suits them: "512 B", "1.5 kB", "23 MB".
 std::string bytes_text(size_t bytes);
 

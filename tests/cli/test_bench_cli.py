@@ -112,6 +112,17 @@ def test_growth_and_rows_that_reach_a_limit():
     rows = bench("slivers.obj", "--rows", "binned_sah,brute_force", "--limit-gigabytes", "0.00005", "--rays", "primary",
                  "--against", "none")
     assert not rows[0]["finished"] and "bytes" in rows[0]["why_not"] and rows[0]["mrays_per_second"] is None
+    assert rows[0]["short_of_room"] is None
+
+
+def test_a_row_without_room_for_its_cuts_says_so():
+    quiet = ["--rows", "spatial_split(cap=8)+bvh2", "--rays", "primary", "--against", "none"]
+    assert all(row["short_of_room"] == [] for row in bench("slivers.obj", *quiet))
+    tight = [*quiet, "--limit-gigabytes", "0.0001"]
+    assert all(row["short_of_room"] == ["spatial_split"] for row in bench("slivers.obj", *tight))
+    result = kerf("bench", "slivers.obj", *QUICK, *tight)
+    assert "the limit of bytes left spatial_split no room to cut" in result.stdout
+    assert "raise --limit-gigabytes" in result.stdout
 
 
 def test_a_row_of_cameras_and_words_of_the_camera_are_used(folder):

@@ -120,6 +120,7 @@ def test_json_says_what_was_done():
     assert scene["primitives"] == 2 and scene["references"] > 2 and scene["sa_max"] == 0.6
     assert scene["references_per_primitive"] == scene["references"] / 2
     assert len(scene["tree_hash"]) == 16
+    assert scene["capped"] is False and scene["short_of_room"] == []
     plain = json.loads(kerf("render", "square.ply", "-o", "a.png", *QUICK, "--json", "-", "--quiet").stdout)
     assert plain["view"] == "beauty" and plain["samples"] == 2 and plain["paths"] == 16 * 12 * 2 <= plain["rays"]
     assert plain["scene"]["sa_max"] == "auto" and plain["scene"]["references"] == 4, "the square and two lights"

@@ -96,6 +96,16 @@ def test_rows_that_do_not_finish_say_so_and_the_others_go_on():
     assert unlimited.returncode == 0 and "not finished" not in unlimited.stdout
 
 
+def test_rows_without_room_for_their_cuts_say_so():
+    rows = ["--rows", "binned_sah,early_split(budget=4)+spatial_split(cap=8)"]
+    assert [row["short_of_room"] for row in study("slivers.obj", *rows)] == [[], []]
+    tight = [*rows, "--limit-gigabytes", "0.0001"]
+    assert [row["short_of_room"] for row in study("slivers.obj", *tight)] == [[], ["early_split", "spatial_split"]]
+    result = kerf("study", "slivers.obj", *QUICK, *tight, "--csv", "out.csv")
+    assert result.stdout.count("raise --limit-gigabytes") == 1
+    assert [row["short_of_room"] for row in csv.DictReader(open("out.csv"))] == ["", "early_split+spatial_split"]
+
+
 def test_rows_of_a_turned_sweep_are_those_of_the_turned_scene():
     for turn in ([], ["--turn", "xyz"]):
         rows = study("slivers.obj", "--sweep", "sa_max", *turn)

@@ -343,6 +343,9 @@ def test_memory_is_bounded():
         kerf.Scene(*mesh, max_bytes=1000)
     assert error.value.code == "stopped"
     assert kerf.Scene(*mesh, max_bytes=100_000_000).report["peak_bytes"] == report["peak_bytes"]
+    assert report["short_of_room"] == []
+    tight = kerf.Scene(*mesh, "spatial_split(cap=8)", max_bytes=2_000_000).report
+    assert tight["short_of_room"] == ["spatial_split"] and tight["peak_bytes"] <= 2_000_000
 
 
 def test_report_bounds_menu_version():
