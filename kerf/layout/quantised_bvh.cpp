@@ -171,11 +171,16 @@ void QuantisedNode::set_bounds(std::span<const Box3f> boxes) {
   }
 }
 
-std::vector<LeafSlot> QuantisedBvh::slots(QuantisedChild leaf) const {
-  if (leaf.kind() == QuantisedChild::kSlots) return read_slots(&leaves[leaf.number()]);
+void QuantisedBvh::read_slots(QuantisedChild leaf, std::vector<LeafSlot>& to) const {
+  if (leaf.kind() == QuantisedChild::kSlots) return kerf::read_slots(&leaves[leaf.number()], to);
   const QuantisedLeaf all = triangles(leaf);
-  std::vector<LeafSlot> slots(all.count());
-  for (uint32_t i = 0; i < slots.size(); ++i) slots[i] = all.slot(i);
+  to.resize(all.count());
+  for (uint32_t i = 0; i < to.size(); ++i) to[i] = all.slot(i);
+}
+
+std::vector<LeafSlot> QuantisedBvh::slots(QuantisedChild leaf) const {
+  std::vector<LeafSlot> slots;
+  read_slots(leaf, slots);
   return slots;
 }
 

@@ -93,6 +93,7 @@ struct QuantisedBvh {
                                                  : triangles(leaf).count();
   }
   std::vector<LeafSlot> slots(QuantisedChild leaf) const;
+  void read_slots(QuantisedChild leaf, std::vector<LeafSlot>& to) const;
   /// Writes a leaf of triangles, as they are now, or of any primitives, from a unit on.
   QuantisedChild write_leaf(std::span<const LeafSlot> slots, bool is_triangles, std::span<const Geometry> geometries,
                             size_t unit);

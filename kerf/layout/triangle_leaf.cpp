@@ -27,10 +27,9 @@ void write_slots(std::span<const LeafSlot> slots, LeafUnit* to) {
   std::memcpy(to + 1, slots.data(), slots.size_bytes());
 }
 
-std::vector<LeafSlot> read_slots(const LeafUnit* from) {
-  std::vector<LeafSlot> slots(std::bit_cast<uint32_t>(from->values[0]));
-  std::memcpy(static_cast<void*>(slots.data()), from + 1, slots.size() * sizeof(LeafSlot));
-  return slots;
+void read_slots(const LeafUnit* from, std::vector<LeafSlot>& to) {
+  to.resize(std::bit_cast<uint32_t>(from->values[0]));
+  std::memcpy(static_cast<void*>(to.data()), from + 1, to.size() * sizeof(LeafSlot));
 }
 
 }  // namespace kerf

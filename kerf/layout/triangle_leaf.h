@@ -45,7 +45,7 @@ struct TriangleLeaf {
 /// Units of a leaf of any primitives: one that begins with their number, then their slots.
 constexpr size_t slots_units(size_t count) { return 1 + (count + 1) / 2; }
 void write_slots(std::span<const LeafSlot> slots, LeafUnit* to);
-std::vector<LeafSlot> read_slots(const LeafUnit* from);
+void read_slots(const LeafUnit* from, std::vector<LeafSlot>& to);
 
 /// Writes a TriangleLeaf of triangles that the slots name; `to` has room for units(count). A triangle without area is
 /// written as a point, its first corner, which no ray hits.

@@ -49,11 +49,17 @@ void WideNode<kWidth>::set_bounds(std::span<const Box3f> boxes) {
 }
 
 template <uint32_t kWidth>
-std::vector<LeafSlot> WideBvh<kWidth>::slots(WideChild leaf) const {
+void WideBvh<kWidth>::read_slots(WideChild leaf, std::vector<LeafSlot>& to) const {
   const LeafUnit* unit = &leaves[leaf.number()];
-  if (leaf.kind() == WideChild::kSlots) return read_slots(unit);
-  std::vector<LeafSlot> slots(leaf.kind());
-  std::memcpy(static_cast<void*>(slots.data()), unit->values + 9 * slots.size(), slots.size() * sizeof(LeafSlot));
+  if (leaf.kind() == WideChild::kSlots) return kerf::read_slots(unit, to);
+  to.resize(leaf.kind());
+  std::memcpy(static_cast<void*>(to.data()), unit->values + 9 * to.size(), to.size() * sizeof(LeafSlot));
+}
+
+template <uint32_t kWidth>
+std::vector<LeafSlot> WideBvh<kWidth>::slots(WideChild leaf) const {
+  std::vector<LeafSlot> slots;
+  read_slots(leaf, slots);
   return slots;
 }
 
@@ -93,6 +99,7 @@ uint64_t tree_hash(const WideBvh<kWidth>& layout) {
   template void WideNode<width>::set_bounds(std::span<const Box3f>);                                                   \
   template WideChild WideBvh<width>::write_leaf(std::span<const LeafSlot>, bool, std::span<const Geometry>, size_t);   \
   template std::vector<LeafSlot> WideBvh<width>::slots(WideChild) const;                                               \
+  template void WideBvh<width>::read_slots(WideChild, std::vector<LeafSlot>&) const;                                   \
   template WideBvh<width> make_wide_bvh<width>(const Bvh&, std::span<const Geometry>, const WideCosts&, LeafNumbers*); \
   template std::optional<std::string> find_fault<width>(const WideBvh<width>&, std::span<const Geometry>);             \
   template uint64_t tree_hash<width>(const WideBvh<width>&);

@@ -72,6 +72,7 @@ struct WideBvh {
     return leaf.kind() == WideChild::kSlots ? std::bit_cast<uint32_t>(leaves[leaf.number()].values[0]) : leaf.kind();
   }
   std::vector<LeafSlot> slots(WideChild leaf) const;
+  void read_slots(WideChild leaf, std::vector<LeafSlot>& to) const;
   /// Writes a leaf of triangles, as they are now, or of any primitives, from a unit on.
   WideChild write_leaf(std::span<const LeafSlot> slots, bool is_triangles, std::span<const Geometry> geometries,
                        size_t unit);

@@ -34,12 +34,13 @@ class WideStructure : public Structure {
   }
 
   void visit_nodes(const std::function<void(const NodeView&)>& visit) const override {
-    if (!tracer_.layout.is_empty()) visit_child(tracer_.layout.root, tracer_.layout.bounds, 0, visit);
+    std::vector<LeafSlot> slots;
+    if (!tracer_.layout.is_empty()) visit_child(tracer_.layout.root, tracer_.layout.bounds, 0, slots, visit);
   }
 
-  /// Of the boxes that rays meet, which in steps reach a little out of those around them.
+  /// Of the boxes that rays meet, which in steps reach a little out of those around them. In the order of memory, which
+  /// takes a fraction of the time of another visit.
   double cost() const override {
-    if constexpr (!kIsQuantised) return Structure::cost();
     const Layout& layout = tracer_.layout;
     const double root = half_area(layout.bounds);
     if (layout.is_empty() || !(root > 0)) return 0;
@@ -63,14 +64,17 @@ class WideStructure : public Structure {
  private:
   static constexpr bool kIsQuantised = std::is_same_v<Layout, QuantisedBvh>;
 
-  void visit_child(typename Layout::Child child, const Box3f& bounds, uint32_t depth,
+  /// `slots`: room for those of a leaf.
+  void visit_child(typename Layout::Child child, const Box3f& bounds, uint32_t depth, std::vector<LeafSlot>& slots,
                    const std::function<void(const NodeView&)>& visit) const {
-    const std::vector<LeafSlot> slots = child.is_leaf() ? tracer_.layout.slots(child) : std::vector<LeafSlot>{};
-    visit({bounds, depth, child.is_leaf(), slots});
-    if (child.is_leaf()) return;
+    if (child.is_leaf()) {
+      tracer_.layout.read_slots(child, slots);
+      return visit({bounds, depth, true, slots});
+    }
+    visit({bounds, depth, false, {}});
     const auto& node = tracer_.layout.nodes[child.number()];
     for (uint32_t i = 0; i < Layout::kChildren && node.has_child(i); ++i) {
-      visit_child(node.child[i], intersected(bounds, node.bounds(i)), depth + 1, visit);
+      visit_child(node.child[i], intersected(bounds, node.bounds(i)), depth + 1, slots, visit);
     }
   }
 
