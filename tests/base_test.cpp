@@ -120,6 +120,20 @@ TEST(StandardFloat, OverridesTheCallersModeAndRestoresIt) {
   EXPECT_EQ(small * 0.5F, 0.0F);
   EXPECT_GT(one + 1e-20F, 1.0F);
 }
+
+TEST(StandardFloat, SeesEachWayThatAModeMayDiffer) {
+  for (const test::HostileFloat::Control what : test::HostileFloat::kEach) {
+    const test::HostileFloat hostile(what);
+    ASSERT_TRUE(test::HostileFloat::is_on(what));
+    {
+      const StandardFloat standard;
+      EXPECT_TRUE(test::HostileFloat::is_off()) << what;
+      const StandardFloat within;
+      EXPECT_TRUE(test::HostileFloat::is_off()) << what;
+    }
+    EXPECT_TRUE(test::HostileFloat::is_on(what)) << what;
+  }
+}
 #endif
 
 }  // namespace

@@ -187,6 +187,34 @@ TEST(WideBvh, TheSameHitsOnEveryInstructionSet) {
   }
 }
 
+/// Rays that begin and end on a floor, where its crossing is at zero, whichever sign their ends have.
+TEST(WideBvh, EndsOfMinusZeroAreZero) {
+  std::vector<Vec3f> vertices;
+  std::vector<TriangleCorners> triangles;
+  for (uint32_t i = 0; i < 100; ++i) {
+    const auto x = static_cast<float>(2 * (i % 10)), y = static_cast<float>(2 * (i / 10));
+    for (const Vec3f corner : {Vec3f{x, y, 0}, Vec3f{x + 1, y, 0}, Vec3f{x, y + 1, 0}}) vertices.push_back(corner);
+    triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  for (const std::string_view set : instruction_sets()) {
+    const ScopedVariable isa("KERF_ISA", std::string(set));
+    for (const char* structure : {"brute_force", "binned_sah+bvh4", "binned_sah+bvh8", "binned_sah+quantised_bvh8"}) {
+      Scene scene;
+      scene.add(TriangleMesh{std::span<const Vec3f>(vertices), std::span<const TriangleCorners>(triangles)});
+      scene.build({.structure = structure});
+      for (uint32_t i = 0; i < 400; ++i) {
+        const float begin = i % 4 < 2 ? 0.0F : -0.0F, end = i % 2 == 0 ? 0.0F : -0.0F;
+        const Vec3f corner = vertices[size_t{3} * (i / 4)];
+        for (const Vec3f direction : {Vec3f{0.5F, -0.25F, 1}, Vec3f{-0.5F, 0.25F, -1}}) {
+          const Ray ray{{corner.x + 0.25F, corner.y + 0.25F, 0}, begin, direction, end};
+          EXPECT_EQ(scene.closest_hit(ray).primitive, i / 4) << structure << ", " << set << ", " << begin << " " << end;
+          EXPECT_TRUE(scene.any_hit(ray)) << structure << ", " << set << ", " << begin << " " << end;
+        }
+      }
+    }
+  }
+}
+
 /// The ray begins 2e-12 above a floor, and its hit, worked out in double, is at 2e-16 instead of before its beginning:
 /// the same in every structure, so boxes are a little larger than what they hold.
 TEST(WideBvh, BoxesHoldHitsThatRoundingMoved) {
