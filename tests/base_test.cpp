@@ -102,6 +102,41 @@ TEST(Parallel, InvokeNestsAndRethrows) {
                std::runtime_error);
 }
 
+/// One part throws while the other one goes on with parallel work of its own, as a tree is built: what that work
+/// returns from is done, or it throws too.
+TEST(Parallel, WorkWithinWorkThatFailedIsDoneOrThrows) {
+  using Clock = std::chrono::steady_clock;
+  std::atomic<bool> is_started = false, is_thrown = false;
+  std::atomic<size_t> undone = 0;
+  const auto fail = [&] {
+    for (const auto end = Clock::now() + std::chrono::seconds(5); !is_started && Clock::now() < end;) {
+      std::this_thread::yield();
+    }
+    is_thrown = true;
+    throw std::runtime_error("first");
+  };
+  const auto go_on = [&] {
+    is_started = true;
+    auto end = Clock::now() + std::chrono::seconds(5);
+    for (bool was_thrown = false; Clock::now() < end;) {
+      if (!was_thrown && is_thrown) {
+        was_thrown = true;
+        end = Clock::now() + std::chrono::milliseconds(50);
+      }
+      std::atomic<size_t> done = 0;
+      parallel_invoke([&] { ++done; }, [&] { ++done; });
+      parallel_for(8, 1, [&](size_t, size_t) { ++done; });
+      undone += done == 10 ? 0 : 1;
+    }
+  };
+  for (int i = 0; i < 4; ++i) {
+    is_started = is_thrown = false;
+    EXPECT_THROW(with_threads(2, [&] { parallel_invoke(fail, go_on); }), std::runtime_error);
+    EXPECT_THROW(with_threads(2, [&] { parallel_invoke(go_on, fail); }), std::runtime_error);
+  }
+  EXPECT_EQ(undone, 0U);
+}
+
 #if defined(KERF_HOSTILE_FLOAT)
 TEST(StandardFloat, OverridesTheCallersModeAndRestoresIt) {
   volatile float small = 1e-40F, one = 1;

@@ -57,6 +57,8 @@ FAULTS = [
           "} while (false);\n      while ((numbers_.numbers[at - 1] & LeafNumbers::kLast) == 0) ++at;", "refit_test"),
     Fault("triangles without area written as they are", "kerf/layout/triangle_leaf.cpp",
           "const bool is_point = is_degenerate(triangle);", "const bool is_point = false;", "wide_collapse_test"),
+    Fault("cancelled tasks taken for done", "kerf/base/parallel_tbb.cpp",
+          "if (context.is_group_execution_cancelled()) throw", "if (false) throw", "base_test"),
     Fault("a caller's float mode half seen", "kerf/base/fp_environment.h", "== 0xFFFF;", "!= 0;", "base_test", "sse2"),
     Fault("an end of minus zero before all others", "kerf/trace/wide_ray.h",
           "t_max(ray.t_max + 0.0F)", "t_max(ray.t_max)", "wide_bvh_test"),
