@@ -45,9 +45,8 @@ struct StudyResult {
   std::optional<double> end_point_overlap;  ///< none: not asked for
   size_t hits = 0;
   uint64_t tree_hash = 0;
-  std::optional<SplitChoice> choice;  ///< of automatic splitting: how far it went, and why
-  std::vector<std::string>
-      short_of_room;  ///< stages that the limit of bytes kept from cuts: BuildReport::short_of_room
+  std::optional<SplitChoice> choice;       ///< of automatic splitting: how far it went, and why
+  std::vector<std::string> short_of_room;  ///< stages that the limit of bytes kept from cuts
 
   std::optional<PaperRow> paper;  ///< the row that this one stands beside
 };

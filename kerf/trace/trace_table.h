@@ -65,26 +65,20 @@ decltype(auto) tracer_at(const void* data) {
   }
 }
 
-/// A tracer may have the two queries of one ray as plain functions itself, which saves a call.
-template <class Tracer>
-constexpr auto closest_of() -> Hit (*)(const void*, const Ray&) {
-  if constexpr (requires { Tracer::closest_hit; }) {
-    return Tracer::closest_hit;
+/// What a query of one ray tells: the closest hit, or whether there is any.
+template <bool kAny>
+using QueryResult = std::conditional_t<kAny, bool, Hit>;
+
+/// A tracer may have `template <bool kAny> static QueryResult<kAny> query(const void* data, const Ray&)` itself, which
+/// saves a call.
+template <class Tracer, bool kAny>
+constexpr auto query_of() -> QueryResult<kAny> (*)(const void*, const Ray&) {
+  if constexpr (requires { &Tracer::template query<kAny>; }) {
+    return &Tracer::template query<kAny>;
   } else {
     return [](const void* data, const Ray& ray) {
       NoCounts counts;
-      return tracer_at<Tracer>(data).template trace<false>(ray, counts);
-    };
-  }
-}
-template <class Tracer>
-constexpr auto any_of() -> bool (*)(const void*, const Ray&) {
-  if constexpr (requires { Tracer::any_hit; }) {
-    return Tracer::any_hit;
-  } else {
-    return [](const void* data, const Ray& ray) {
-      NoCounts counts;
-      return static_cast<bool>(tracer_at<Tracer>(data).template trace<true>(ray, counts));
+      return static_cast<QueryResult<kAny>>(tracer_at<Tracer>(data).template trace<kAny>(ray, counts));
     };
   }
 }
@@ -108,8 +102,8 @@ void trace_batch(const Tracer& tracer, std::span<const Ray> rays, std::span<Resu
 /// which for kAny may return any hit.
 template <class Tracer>
 inline constexpr TraceTable kTraceTable = {
-    detail::closest_of<Tracer>(),
-    detail::any_of<Tracer>(),
+    detail::query_of<Tracer, false>(),
+    detail::query_of<Tracer, true>(),
     [](const void* data, const Ray& ray, TraceCounts& counts) {
       return detail::tracer_at<Tracer>(data).template trace<false>(ray, counts);
     },

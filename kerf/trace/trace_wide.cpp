@@ -88,13 +88,10 @@ struct Kernel {
 
   static Kernel at(const void* data) { return {*static_cast<const Tracer*>(data)}; }
 
-  static Hit closest_hit(const void* data, const Ray& ray) {
+  template <bool kAny>
+  static detail::QueryResult<kAny> query(const void* data, const Ray& ray) {
     NoCounts counts;
-    return at(data).template go<false>(ray, counts);
-  }
-  static bool any_hit(const void* data, const Ray& ray) {
-    NoCounts counts;
-    return static_cast<bool>(at(data).template go<true>(ray, counts));
+    return static_cast<detail::QueryResult<kAny>>(at(data).template go<kAny>(ray, counts));
   }
 
   template <bool kAny, class Counts>
